@@ -3,7 +3,7 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | mesh a network | [`network::mesh_network`], with [`network::clean`] and [`network::refine`] before it |
+//! | mesh a network | [`network::Run`] |
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
@@ -11,9 +11,6 @@
 //!
 //! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
 //! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
-
-// What only an optional part uses is not used without it.
-#![cfg_attr(not(all(feature = "cli", feature = "woven")), allow(dead_code, unused_imports))]
 
 mod block;
 #[cfg(feature = "cli")]
@@ -28,7 +25,9 @@ mod picture;
 mod pipeline;
 mod prepare;
 mod refine;
+#[cfg(feature = "cli")]
 mod report;
+mod run;
 mod surface;
 #[cfg(feature = "cli")]
 mod view;
@@ -48,13 +47,21 @@ pub use anastomesh_tet as tet;
 /// Each operation has its options, its result, and a report of what it did. The other types of networks are in
 /// [`crate::skeleton`].
 pub mod network {
+    // A whole run: preparation, refinement, retries, comparison with the network, flow.
+    pub use crate::fidelity::{Along, Displaced, Displacements, Fidelity};
+    pub use crate::run::{Attempt, Defect, Fault, MeshingError, NetworkMesh, Networks, PreparedRun, Run, Strategy};
     // Cleaned.
     pub use anastomesh_skeleton::{Skeleton, clean};
+    // Synthetic networks.
+    pub use crate::grow::{
+        BedParams, Dual, GenerateError, GenerateParams, Looped, Morphometry, OrderFigures, Organ, Published,
+        RAT_KIDNEY, dual, generate, looped,
+    };
     // Measured networks prepared.
     pub use crate::prepare::{
         ClosedLoop, FilledRadius, Island, JoinedNodes, JoinedReport, MergeReport, Merged, Parting, PrepareParams,
         PrepareReport, Prepared, RadiusDefect, ResampleReport, ShortTip, Size, Spur, SpurReason, TouchedBy, Touching,
-        TouchingTip, prepare,
+        TouchingTip, directed, prepare,
     };
     // Overlapping vessels moved apart.
     pub use crate::refine::{
@@ -65,9 +72,10 @@ pub mod network {
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;
     pub use crate::pipeline::{
-        BlockCounts, Difference, Estimate, FailedBlock, FilledLoops, FusedBlock, JointStyle, Manifest, Meeting,
-        MeshPlan, MeshSize, Meshed, NotATerminal, PlanError, Retry, RunError, RunReport, Shard, Store, StoreError,
-        Stored, ThinBlock, TooLarge, Whole, mesh_into, mesh_network,
+        BlockCounts, CapRow, Caps, Datum, Difference, Estimate, FailedBlock, FilledLoops, Fluid, Forecast, FusedBlock,
+        Inlet, InletReason, Inlets, JointStyle, LeftWhole, Manifest, Meeting, MeshPlan, MeshSize, Meshed, NoShard,
+        NoTerminal, NotATerminal, Outlets, PlanError, Retry, Role, RunError, RunReport, Shard, ShareReport, StageTime,
+        Store, StoreError, Stored, ThinBlock, TooLarge, VesselData, Whole, make_share, mesh_into, mesh_network,
     };
 }
 
@@ -82,13 +90,14 @@ pub mod check {
 /// For the tests, benchmarks and fuzz targets of this crate; not part of what it promises.
 #[doc(hidden)]
 pub mod testing {
-    pub use crate::block::{BlockParams, ClusterMesh, EndStyle, mesh_cluster};
+    pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster};
     pub use crate::flow::solve as network_flow;
-    pub use crate::grow::{Dual, GenerateError, GenerateParams, Morphometry, Organ, RAT_KIDNEY, dual, generate};
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
+    pub use crate::pipeline::replay;
     pub use crate::refine::split;
+    #[cfg(feature = "cli")]
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
 
@@ -104,7 +113,6 @@ pub mod testing {
     };
     pub use crate::refine::{SplitNode, SplitReport};
     pub use crate::report::info::{Quartiles, UnitGuess};
-    pub use crate::report::inlets::{Inlet, Why};
     pub use crate::surface::{CapError, CapFailure, SharedDisc, SurfaceError};
     pub use anastomesh_io::network::{
         NetworkFormat, read_network_arrays, read_network_from, refinement_arrays, write_tree,

@@ -248,7 +248,7 @@ const KINDS: [(&str, Make); 19] = [
 
 /// Outcome of a network.
 fn end(given: &Skeleton) -> Result<&'static str, String> {
-    let prepared = match prepare(given, &PrepareParams::default()) {
+    let prepared = match prepare(given, &[], &PrepareParams::default()) {
         Ok(prepared) => prepared,
         Err(e) => return Ok(said(&e.to_string())),
     };

@@ -33,7 +33,7 @@ fn only(set: impl Fn(&mut PrepareParams)) -> PrepareParams {
 }
 
 fn done(s: &Skeleton, params: &PrepareParams) -> Prepared {
-    let prepared = prepare(s, params).unwrap();
+    let prepared = prepare(s, &[], params).unwrap();
     assert_eq!(prepared.skeleton.check(), Ok(()));
     prepared
 }
@@ -109,7 +109,7 @@ fn radii_are_filled_between_good_ones() {
         told,
         [(1, Some(0.0), RadiusDefect::Missing), (2, None, RadiusDefect::Missing), (3, None, RadiusDefect::Missing)]
     );
-    assert!(prepare(&s, &PrepareParams::as_is()).is_err());
+    assert!(prepare(&s, &[], &PrepareParams::as_is()).is_err());
 
     s.nodes[1].radius = 2.0;
     s.nodes[2].radius = 50.0;
@@ -119,7 +119,7 @@ fn radii_are_filled_between_good_ones() {
     for node in &mut s.nodes {
         node.radius = 0.0;
     }
-    assert!(prepare(&s, &PrepareParams::default()).is_err());
+    assert!(prepare(&s, &[], &PrepareParams::default()).is_err());
 }
 
 /// Radii of vessels in a file are kept: a wide branch point is not a neighbour of a twig's tip.
@@ -276,7 +276,7 @@ fn islands_smaller_than_asked_go() {
     let s = lines(&[vec![[0.0; 3], [9.0, 0.0, 0.0], [19.0, 0.0, 0.0]], vec![[0.0, 50.0, 0.0], [4.0, 50.0, 0.0]]], 1.0);
     let made = done(&s, &only(|p| p.drop_islands = 3));
     assert_eq!((made.report.islands.len(), made.report.islands[0].node, made.report.result.components), (1, 3, 1));
-    assert!(prepare(&s, &only(|p| p.drop_islands = 4)).is_err());
+    assert!(prepare(&s, &[], &only(|p| p.drop_islands = 4)).is_err());
 }
 
 #[test]
@@ -386,9 +386,9 @@ proptest! {
             Edge { nodes: ids.map(NodeId), radii: ids.map(|i| nodes[i as usize].radius) }
         };
         let s = Skeleton { edges: edges.iter().map(edge).collect(), nodes: nodes.clone() };
-        if let Ok(made) = prepare(&s, &PrepareParams::default()) {
+        if let Ok(made) = prepare(&s, &[], &PrepareParams::default()) {
             prop_assert_eq!(made.skeleton.check(), Ok(()));
-            prop_assert_eq!(prepare(&s, &PrepareParams::default()), Ok(made));
+            prop_assert_eq!(prepare(&s, &[], &PrepareParams::default()), Ok(made));
         }
     }
 }

@@ -4,8 +4,8 @@
 mod common;
 
 use anastomesh::Point3;
+use anastomesh::network::dual;
 use anastomesh::network::{Crowded, RefineParams, Refined, Residual, Skeleton, refine};
-use anastomesh::testing::dual;
 
 fn refined(skeleton: &Skeleton, params: &RefineParams) -> Refined {
     let refined = refine(skeleton, params, &()).expect("a cleaned network can be refined");

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 const GOOD: f64 = 0.9;
 
 /// Maximum rounds of flips and slides.
-const ROUNDS: usize = 3;
+const MAX_WALL_PASSES: usize = 3;
 
 /// Minimum gain in the worst radius ratio. Smaller gains are rounding, and changes could alternate forever.
 const GAIN: f64 = 1e-3;
@@ -46,7 +46,7 @@ impl<'a> TubeWall<'a> {
 
     /// Improves the wall. Edges and vertices of the rims are fixed.
     pub(super) fn improve(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_WALL_PASSES {
             let flips = self.flip();
             let slides = self.slide();
             if flips + slides == 0 {

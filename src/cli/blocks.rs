@@ -3,12 +3,12 @@
 use super::exit::Failure;
 use super::limits::size;
 use super::log;
-use super::network::{NetworkArgs, PreparedNetwork};
+use super::network::NetworkArgs;
 use crate::pipeline::{MeshPlan, RunReport};
-use crate::prepare::PrepareParams;
 use crate::report::advice::advice;
+use anastomesh_io::network::{NetworkFile, NetworkOptions};
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
-use anastomesh_skeleton::{NodeSizes, SizeAt};
+use anastomesh_skeleton::{BadSize, NodeSizes, SizeAt};
 use std::fmt;
 use std::str::FromStr;
 
@@ -99,16 +99,12 @@ impl BlockArgs {
     }
 
     /// Reads the network that they are for, with what it says of their blocks, which goes into the plan.
-    pub fn read(
-        &self,
-        network: &NetworkArgs,
-        params: &PrepareParams,
-        plan: &mut MeshPlan,
-    ) -> Result<PreparedNetwork, Failure> {
-        let Some(SizeArg::Array(array)) = &self.size_at else { return network.prepared(params) };
-        let prepared = network.prepared_with(params, Some(array))?;
-        plan.size_at = Some(prepared.sizes(array)?);
-        Ok(prepared)
+    pub fn read(&self, network: &NetworkArgs, any_radii: bool, plan: &mut MeshPlan) -> Result<NetworkFile, Failure> {
+        let Some(SizeArg::Array(array)) = &self.size_at else { return network.file(any_radii) };
+        let options = network.options(any_radii).node_array(Some(array.clone()));
+        let file = network.file_with(&options)?;
+        plan.size_at = Some(sizes(array, &file)?);
+        Ok(file)
     }
 
     /// What of them a mesh depends on, as they are typed.
@@ -118,4 +114,16 @@ impl BlockArgs {
         let size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
         format!("--rho {} --follow {}{stretch}{size}{refine}", self.rho, self.follow)
     }
+}
+
+/// Lengths of edges by an array of the file.
+fn sizes(array: &str, file: &NetworkFile) -> Result<SizeAt, Failure> {
+    let sizes = NodeSizes::new(array, &file.node_values).map_err(|BadSize { node, value }| {
+        Failure::input(format!(
+            "--size-at {array}: node {} has the value {value}; each node needs a finite number above zero (1: edges as \
+             rho has them): correct the array",
+            file.names.of(node)
+        ))
+    });
+    sizes.map(SizeAt::Nodes)
 }

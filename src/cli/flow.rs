@@ -1,10 +1,8 @@
 //! What flows through a mesh, for what is written beside it and for cases of solvers.
 
-use super::network::PreparedNetwork;
 use crate::pipeline::{Fluid, Outlets};
-use crate::report::inlets::Inlets;
-use anastomesh_skeleton::{Extended, NodeId, Skeleton};
-use rustc_hash::FxHashSet;
+use anastomesh_io::network::NodeNames;
+use anastomesh_skeleton::NodeId;
 
 /// Terminals that are named at most.
 const LISTED: usize = 10;
@@ -52,26 +50,14 @@ impl FlowArgs {
         Fluid { density: self.density, viscosity: self.viscosity, inflow: self.inflow }
     }
 
-    /// Lengthens inlets and outlets, where that is asked for; says of which not by as much.
-    pub fn extend(&self, network: &mut PreparedNetwork, inlets: &Inlets) -> Option<String> {
-        let by = [self.extend_inlets, self.extend_outlets].map(Option::unwrap_or_default);
-        if by == [0.0; 2] {
-            return None;
-        }
-        let inlets: FxHashSet<u32> = inlets.list.iter().map(|inlet| inlet.original).collect();
-        let extended = |skeleton: &Skeleton| {
-            let by = |node: NodeId| by[usize::from(!inlets.contains(&skeleton.node(node).original))];
-            skeleton.extended(&skeleton.adjacency().terminals().into_iter().map(|node| (node, by(node))).collect())
-        };
-        // What the mesh is held against is as long.
-        network.given = extended(&network.given).skeleton;
-        network.outline = extended(&network.outline).skeleton;
-        let Extended { skeleton, cut_short } = extended(&network.skeleton);
-        network.skeleton = skeleton;
-        let named = |&(node, radii): &(NodeId, f64)| {
-            let name = network.names.of(NodeId(network.skeleton.node(node).original));
-            format!("node {name} by {radii} radii")
-        };
+    /// Lengths by which inlets and outlets are extended, in their radii.
+    pub fn extension(&self) -> [f64; 2] {
+        [self.extend_inlets, self.extend_outlets].map(Option::unwrap_or_default)
+    }
+
+    /// Says which terminals were extended by less than asked for.
+    pub fn remark(cut_short: &[(u32, f64)], names: &NodeNames) -> Option<String> {
+        let named = |&(node, radii): &(u32, f64)| format!("node {} by {radii} radii", names.of(NodeId(node)));
         let first: Vec<String> = cut_short.iter().take(LISTED).map(named).collect();
         let more = if cut_short.len() > LISTED { ", …" } else { "" };
         let (count, list) = (cut_short.len(), first.join(", "));

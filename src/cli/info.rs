@@ -18,7 +18,7 @@ pub struct Args {
 /// Reads a network and prints what it holds.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
-    let inlets = network.inlets(&[])?;
+    let inlets = network.inlets()?;
     let notes = network.notes.iter().map(hint::of_note).collect();
     let mut info = NetworkInfo::new(&network.skeleton, network.cleaned, notes);
     info.inlets.clone_from(&inlets.list);

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
@@ -15,29 +14,29 @@ use super::hint;
 use super::layers::LayerArgs;
 use super::limits::{self, BlockPlace};
 use super::log;
-use super::network::{NetworkArgs, PreparedNetwork};
+use super::network::NetworkArgs;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
+use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
-use crate::pipeline::RunReport;
-use crate::pipeline::{
-    self, Caps, Clock, Datum, Estimate, Forecast, JointStyle, MeshPlan, Outlets, RunError, Shard, Stored, TooLarge,
-    VesselData,
-};
-use crate::refine::{RefineParams, Refined};
+use crate::pipeline::{Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, RunReport, Shard, VesselData};
+use crate::prepare::PrepareReport;
+use crate::refine::RefineReport;
 use crate::report::caps;
+use crate::report::fidelity::displaced;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
+use crate::run::{Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
-use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
+use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with};
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
-use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
@@ -120,28 +119,18 @@ enum JointArg {
 /// How much longer edges are on axes than at walls, at most, unless it is asked for.
 const COARSEST_CORE: f64 = 2.0;
 
-/// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
-const HELD_PER_TET: f64 = 150.0;
-
 fn datum(name: &str) -> Result<Datum, String> {
     let known = || Datum::ALL.map(Datum::name).join(", ");
     Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("what is known is {}", known()))
 }
 
-/// A mesh that is there, and what is known of it.
-struct Done<'a> {
-    mesh: &'a dyn MeshSource,
-    expectation: Expectation,
-    check: &'a CheckReport,
-    report: RunReport,
-}
-
 /// What is known of a mesh that is written.
 struct Found<'a> {
     mesh: &'a dyn MeshSource,
+    network: &'a Skeleton,
     check: &'a CheckReport,
-    fidelity: &'a Fidelity,
-    caps: &'a Caps,
+    fidelity: Option<&'a Fidelity>,
+    caps: Option<&'a Caps>,
 }
 
 /// What `--json` prints.
@@ -149,8 +138,9 @@ struct Found<'a> {
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
-    #[serde(flatten)]
-    before: &'a Before,
+    prepare: &'a PrepareReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<&'a RefineReport>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
     fidelity: Option<&'a Fidelity>,
@@ -158,7 +148,7 @@ struct Output<'a> {
 
 /// Meshes a network and writes the mesh.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut plan = args.plan()?;
+    let plan = args.plan()?;
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     if plan.smooths_joints() && args.work.dir.is_some() {
         return Err(Failure::usage(
@@ -179,27 +169,22 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let pool = thread_pool(args.common.threads)?;
-    let read = || args.blocks.read(&args.network, &args.cures.params(true), &mut plan);
-    let mut network = pool.install(read)?;
-    let inlets = network.inlets(&args.root)?;
-    let cut_short = pool.install(|| args.flow.extend(&mut network, &inlets));
-    plan.roots.clone_from(&inlets.roots);
+    let prepared = pool.install(|| args.prepared(plan))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    for remark in network.remarks(args.common.verbose).into_iter().chain(inlets.remarks()).chain(cut_short) {
+    let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
+    let read = remarks(notes, &networks.prepare, args.common.verbose);
+    for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
         bars.note(&remark);
     }
-    let work = if args.dry_run { None } else { args.work.open(shard, &network.skeleton, || args.options(&plan))? };
-    let refined = pool.install(|| args.refined(&network, work.as_ref(), shard, &stop))?;
-    if let (Some(work), Some(shard)) = (&work, shard) {
-        let prepared = network.into_skeleton();
-        let skeleton = refined.map_or(prepared, |(refined, _)| refined.skeleton);
-        return args.run_shard(work, shard, (skeleton, &plan), &pool, (&stop, &bars));
+    let work = if args.dry_run { None } else { args.work.open(shard, || prepared.manifest())? };
+    let refined = || prepared.refined(work.as_ref().map(|work| &work.store), &bars);
+    let prepared = pool.install(refined).map_err(|e| args.explain_alone(e))?;
+    if shard.is_none() {
+        args.tell_refined(&prepared, &stop)?;
     }
-    let before = Before::new(network, refined);
     if args.dry_run {
-        let found = pool.install(|| Forecast::of(&before.network, &plan));
-        let found = found.map_err(|e| Failure::stage(e.to_string()))?;
+        let found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
         print(args.common.json, &found, || forecast(&found, pool.current_num_threads()))?;
         return Ok(Exit::Fine);
     }
@@ -208,9 +193,14 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(dir) = &args.work.dir {
         work::note(dir, &bars);
     }
-    pool.install(|| match work {
-        _ if plan.smooths_joints() => args.run_in_memory(&plan, &before, &bars),
-        work => args.run_in_store(work, &plan, before, &bars),
+    pool.install(|| match (work, shard) {
+        (Some(work), Some(shard)) => args.run_shard(&work, shard, prepared, &bars),
+        _ if prepared.plan.smooths_joints() => {
+            let plan = prepared.plan.clone();
+            let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan))?;
+            args.finish(made, &plan, &bars)
+        }
+        (work, _) => args.run_in_store(work, prepared, &bars),
     })
 }
 
@@ -238,73 +228,48 @@ impl Args {
         if self.layers.layers.is_some() { 1.0 } else { self.blocks.stretch.max(1.0).sqrt().min(COARSEST_CORE) }
     }
 
-    /// A share of the blocks, of which nothing but the network has to be known.
-    fn run_shard(
-        &self,
-        work: &WorkDir,
-        shard: Shard,
-        (network, plan): (Skeleton, &MeshPlan),
-        pool: &rayon::ThreadPool,
-        (stop, bars): (&Stop, &Bars),
-    ) -> Result<Exit, Failure> {
-        stop.keep();
-        if let Some(dir) = &self.work.dir {
-            work::note(dir, bars);
+    /// The network, read and prepared.
+    fn prepared(&self, mut plan: MeshPlan) -> Result<PreparedRun, Failure> {
+        let cures = self.cures.params(true);
+        let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
+        let [inlets, outlets] = self.flow.extension();
+        let mut run = Run::new(file).plan(plan).prepare(cures).roots(&self.root).extend(inlets, outlets);
+        run = run.fluid(self.flow.fluid());
+        if let Some(iterations) = self.blocks.refine {
+            run = run.refine(self.how.params(iterations));
         }
-        let made = pool.install(|| work.make_shard(shard, (network, plan), bars));
-        work::told(shard, &made.map_err(|e| self.explain_alone(&e))?, self.common.json, self.common.quiet)
+        if let Some(radii) = self.max_displacement {
+            run = run.max_displacement(radii);
+        }
+        run.prepared().map_err(|e| self.explain_alone(e))
     }
 
-    /// Joints are to be smoothed: the mesh is held.
-    fn run_in_memory(&self, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
-        let estimate = Estimate::rough(&before.network, plan);
-        let bytes = (estimate.tets * HELD_PER_TET) as u64;
-        if bytes > plan.memory {
-            let (why, instead) = ("woven joints", "--joint disc");
-            let refused = TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory };
-            return Err(Failure::input(hint::of_size(&refused)));
-        }
-        let result = pipeline::mesh_network(&before.network, plan, bars);
-        let result = result.map_err(|e| self.explain(e, plan, before))?;
-        let done =
-            Done { mesh: &result.mesh, expectation: result.expectation, check: &result.check, report: result.report };
-        self.finish(done, plan, before, bars)
+    /// A share of the blocks, of which nothing but the network has to be known.
+    fn run_shard(&self, work: &WorkDir, shard: Shard, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
+        let plan = run.plan.clone();
+        let fits = |estimate: &_| limits::block_fits(estimate, &plan);
+        let made = run.make_share(&work.store, shard, &fits, bars).map_err(|e| self.explain_alone(e))?;
+        work::told(shard, &made, self.common.json, self.common.quiet)
     }
 
     /// Blocks go to where they are kept, and the mesh from there to its file.
-    fn run_in_store(
-        &self,
-        work: Option<WorkDir>,
-        plan: &MeshPlan,
-        before: Before,
-        bars: &Bars,
-    ) -> Result<Exit, Failure> {
+    fn run_in_store(&self, work: Option<WorkDir>, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
+        let plan = run.plan.clone();
         let (place, store) = match work {
             Some(WorkDir { place, store }) => (place, store),
-            None => BlockPlace::beside(&self.output, &Estimate::rough(&before.network, plan), plan.memory)?,
+            None => BlockPlace::beside(&self.output, &run.rough_estimate(), plan.memory)?,
         };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
-        let fits = |estimate: &Estimate| limits::fits(estimate, plan, &place, kept, (&self.output, format));
-        let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
-        let Made { stored, before } = before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
-        let Stored { whole, expectation, check, report } = stored;
-        self.finish(Done { mesh: &whole, expectation, check: &check, report }, plan, &before, bars)
+        let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
+        let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan))?;
+        self.finish(made, &plan, bars)
     }
 
-    /// Everything that the mesh depends on, beside the network.
-    fn options(&self, plan: &MeshPlan) -> serde_json::Value {
-        let refine = self.blocks.refine.map(|iterations| format!("{:?}", self.how.params(iterations)));
-        // Whether failed blocks are left out says nothing about those that are done.
-        let plan = MeshPlan { keep_going: false, ..plan.clone() };
-        serde_json::json!({ "mesh": plan, "refine": refine })
-    }
-
-    /// Writes the mesh, holds it against its network and says what was done.
-    fn finish(&self, done: Done, plan: &MeshPlan, before: &Before, bars: &Bars) -> Result<Exit, Failure> {
-        let Done { mesh, expectation, check, mut report } = done;
+    /// Writes the mesh and says what was done.
+    fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
         let asked = Some(&self.data).filter(|data| !data.is_empty());
-        let data = asked.map(|data| VesselData::new(data.clone(), before.compared().meshed, mesh)).transpose()?;
+        let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
         let options = WriteOptions::default()
             .format(self.format.format)
             .memory((self.blocks.memory / 4) as usize)
@@ -315,59 +280,56 @@ impl Args {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
         };
         let mut clock = Clock::default();
-        let compare = || Fidelity::of(before.compared(), mesh, check.counts.volume);
-        let fidelity = clock.time(bars, Stage::Check, 0, compare).map_err(|e| failed(&e))?;
-        let mut caps = Caps::of(mesh, before.compared().meshed, self.flow.fluid()).map_err(|e| failed(&e))?;
-        let grouped = caps.group(mesh, self.flow.outlets());
-        let written = grouped.as_ref().map_or(mesh, |grouped| grouped);
-        let notes = self.notes(expectation, &caps);
+        let outlets = self.flow.outlets();
+        let grouped = made.caps.as_mut().and_then(|caps| caps.group(&made.mesh, outlets));
+        let written: &dyn MeshSource = match &grouped {
+            Some(grouped) => grouped,
+            None => &made.mesh,
+        };
+        let notes = made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), self.typed());
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
-        self.write_table(&caps, &before.names)?;
-        report.stages.extend(clock.stages());
-        let found = Found { mesh: written, check, fidelity: &fidelity, caps: &caps };
-        self.write_page(plan, before, &report, Some(&found))?;
-        self.print(plan, before, &report, Some((check, &fidelity)))?;
-        let invalid = !check.is_valid() || !report.keeps_vessels(plan.fuse);
-        self.blocks.advise(&report, invalid);
-        let unfaithful = before.unfaithful(&fidelity, self.max_displacement);
-        if let Some(words) = &unfaithful {
-            log::note(words);
+        if let Some(caps) = &made.caps {
+            self.write_table(caps, &made.networks.names)?;
+        }
+        made.report.stages.extend(clock.stages());
+        let (fidelity, caps) = (made.fidelity.as_ref(), made.caps.as_ref());
+        let found = Found { mesh: written, network: &made.network, check: &made.check, fidelity, caps };
+        self.write_page(plan, &made.networks, &made.report, Some(&found))?;
+        self.print(plan, &made.networks, &made.report, Some((&made.check, fidelity)))?;
+        let invalid = !made.is_valid();
+        self.blocks.advise(&made.report, invalid);
+        let mut is_displaced = false;
+        for defect in &made.defects {
+            if let Defect::Displaced { bound, places } = defect {
+                is_displaced = true;
+                log::note(&displaced(places, *bound));
+            }
         }
         Ok(match () {
-            () if !report.failed.is_empty() => Exit::StageFailed,
-            () if invalid => Exit::GateNotMet,
-            () if unfaithful.is_some() && !self.allow_displaced => Exit::GateNotMet,
+            () if !made.report.failed.is_empty() => Exit::StageFailed,
+            () if invalid || (is_displaced && !self.allow_displaced) => Exit::GateNotMet,
             () => Exit::Fine,
         })
     }
 
     /// What went wrong, for people.
-    fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
-        match error {
-            RunError::BlocksFailed(report) => {
-                let paged = self.write_page(plan, before, &report, None);
-                if let Err(failure) = paged.and_then(|()| self.print(plan, before, &report, None)) {
-                    return failure;
-                }
-                self.blocks.advise(&report, true);
-                Failure::stage(format!(
-                    "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
-                    report.failed.len()
-                ))
-            }
-            error => self.explain_alone(&error),
+    fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
+        let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        let paged = self.write_page(plan, &networks, &report, None);
+        if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
+            return failure;
         }
+        self.blocks.advise(&report, true);
+        Failure::stage(format!(
+            "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
+            report.failed.len()
+        ))
     }
 
-    /// The same of what ends a run before there are blocks to speak of.
-    fn explain_alone(&self, error: &RunError) -> Failure {
-        match error {
-            RunError::Cancelled => self.stopped(),
-            RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
-            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(hint::of_run(error)),
-            _ => Failure::stage(error.to_string()),
-        }
+    /// What ends a run before there are blocks to speak of.
+    fn explain_alone(&self, error: MeshingError) -> Failure {
+        failure(error, &self.network.network, || self.stopped())
     }
 
     /// What is left of a run that was stopped, and how it goes on.
@@ -387,35 +349,39 @@ impl Args {
     fn write_page(
         &self,
         plan: &MeshPlan,
-        before: &Before,
+        networks: &Networks,
         run: &RunReport,
         found: Option<&Found>,
     ) -> Result<(), Failure> {
         let failed = || (Mark::Bad, format!("{} blocks could not be meshed", run.failed.len()));
         let verdict = found.map_or_else(failed, |found| page::headline(found.check));
         self.report.write(&self.output, Some(verdict), plan, |page| {
-            let Some(&Found { mesh, check, fidelity, caps }) = found else {
-                page.add(page::failed_blocks(&before.network, run)?);
+            let Some(&Found { mesh, network, check, fidelity, caps }) = found else {
+                page.add(page::failed_blocks(&networks.network, run)?);
                 page.add(page::run(run, &[]));
                 return Ok(());
             };
             page.add(page::summary(check));
             let mut pictures = page::mesh_pictures(mesh)?;
-            pictures.insert(0, page::network_picture(&before.network, &[], "The network by radius."));
+            pictures.insert(0, page::network_picture(&networks.network, &[], "The network by radius."));
             page.add(Section::new("At a glance").pictures(&pictures, false)?);
             if !run.failed.is_empty() {
-                page.add(page::failed_blocks(&before.network, run)?);
+                page.add(page::failed_blocks(&networks.network, run)?);
             }
             page.add(page::validity(check, mesh)?);
             if let Some(quality) = &check.quality {
                 page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
             }
-            page.add(page::fidelity(fidelity, &Along::of(before.compared().meshed, mesh)?));
-            if let Some((report, network)) = before.refinement() {
-                page.add(page::refinement(report, network, &before.network)?);
+            if let Some(fidelity) = fidelity {
+                page.add(page::fidelity(fidelity, &Along::of(network, mesh)?));
+            }
+            if let Some(report) = &networks.refine {
+                page.add(page::refinement(report, &networks.prepared, &networks.network)?);
             }
             page.add(page::run(run, &page::block_sizes(mesh)?));
-            page.add(page::terminals(caps, &before.names));
+            if let Some(caps) = caps {
+                page.add(page::terminals(caps, &networks.names));
+            }
             Ok(())
         })
     }
@@ -437,58 +403,40 @@ impl Args {
         Failure::unwritable(&self.table(), why)
     }
 
-    fn notes(&self, mut expectation: Expectation, caps: &Caps) -> MeshNotes {
-        if self.flow.outlets() != Outlets::Separate {
-            expectation.terminals = caps.alone();
-        }
+    /// What of the options the mesh depends on, as they are typed.
+    fn typed(&self) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
-        MeshNotes {
-            expectation: Some(expectation),
-            generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed()),
-            regions: false,
-            flow: Some(caps.flow()),
-        }
+        format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed())
     }
 
-    /// The network refined, if that was asked for. Shards write to no file that others write to.
-    fn refined(
-        &self,
-        network: &PreparedNetwork,
-        work: Option<&WorkDir>,
-        shard: Option<Shard>,
-        stop: &Stop,
-    ) -> Result<Option<(Refined, RefineParams)>, Failure> {
-        let Some(iterations) = self.blocks.refine else { return Ok(None) };
-        let params = super::refine::fitting(network, self.how.params(iterations));
-        let make = || super::refine::moved_so(network, &params, &self.common, stop);
-        let refined = match work {
-            Some(work) => work.refined(&network.skeleton, &params, &Bars::new(true, None, stop.clone()), make)?,
-            None => make()?,
-        };
-        if shard.is_none() {
-            if let Some(path) = &self.refined {
-                stop.keep();
-                super::refine::write(path, &refined)?;
-            }
-            if self.common.verbose && !self.common.json {
-                log::note(&refined.report.to_string());
-            }
+    /// Writes the refined network and says what was done to it, if that was asked for. Shards write to no file that others
+    /// write to.
+    fn tell_refined(&self, run: &PreparedRun, stop: &Stop) -> Result<(), Failure> {
+        let Some(report) = &run.networks.refine else { return Ok(()) };
+        if let Some(path) = &self.refined {
+            stop.keep();
+            super::refine::write(path, &run.networks.network, &run.origin)?;
         }
-        Ok(Some((refined, params)))
+        if self.common.verbose && !self.common.json {
+            log::note(&report.to_string());
+        }
+        Ok(())
     }
 
     fn print(
         &self,
         plan: &MeshPlan,
-        before: &Before,
+        networks: &Networks,
         run: &RunReport,
-        found: Option<(&CheckReport, &Fidelity)>,
+        found: Option<(&CheckReport, Option<&Fidelity>)>,
     ) -> Result<(), Failure> {
         let (check, fidelity) = found.unzip();
+        let fidelity = fidelity.flatten();
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return print(true, &Output { program, plan, before, run, check, fidelity }, String::new);
+            let Networks { prepare, refine, .. } = networks;
+            let output = Output { program, plan, prepare, refine: refine.as_ref(), run, check, fidelity };
+            return print(true, &output, String::new);
         }
         // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
         if !self.common.quiet

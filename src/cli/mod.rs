@@ -1,6 +1,5 @@
 //! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
 
-mod before;
 mod blocks;
 mod check;
 mod colours;
@@ -31,6 +30,7 @@ mod progress;
 mod refine;
 mod render;
 mod replay;
+mod run;
 mod stop;
 mod surface;
 mod tetrahedralize;

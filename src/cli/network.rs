@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use super::exit::Failure;
 use super::hint;
 use super::units::Units;
-use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare_lines};
-use crate::report::inlets::{Inlets, NoTerminal};
-use crate::report::prepare::text;
+use crate::pipeline::Inlets;
+use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
-use anastomesh_skeleton::{BadSize, CleanReport, NodeId, NodeSizes, SizeAt, Skeleton, clean};
+use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.
 #[derive(Clone, Debug, clap::Args)]
@@ -59,22 +58,12 @@ pub struct Network {
 /// A network ready for use, and what was done so that it is.
 #[derive(Debug)]
 pub struct PreparedNetwork {
-    /// As the file has it, cleaned and with usable radii.
-    pub given: Skeleton,
-    /// The same with as many points as its shape needs.
-    pub outline: Skeleton,
     /// The prepared skeleton.
     pub skeleton: Skeleton,
     /// What the reader decided.
     pub notes: Vec<NetworkNote>,
     /// What was done.
     pub report: PrepareReport,
-    /// What the file calls its nodes.
-    pub names: NodeNames,
-    /// Roots of the trees in the file.
-    roots: Vec<NodeId>,
-    /// The numbers of the array that was asked for, one for each node of the file.
-    node_values: Vec<f64>,
 }
 
 impl NetworkArgs {
@@ -93,7 +82,8 @@ impl NetworkArgs {
         self.file_with(&self.options(any_radii))
     }
 
-    fn file_with(&self, options: &NetworkOptions) -> Result<NetworkFile, Failure> {
+    /// Reads the network with options.
+    pub fn file_with(&self, options: &NetworkOptions) -> Result<NetworkFile, Failure> {
         if let (Some(name), Ok(NetworkFormat::Swc)) = (&self.radius_array, NetworkFormat::of(&self.network)) {
             let path = self.network.display();
             return Err(Failure::usage(format!(
@@ -110,18 +100,12 @@ impl NetworkArgs {
 
     /// Reads the network and applies cures to it.
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
-        self.prepared_with(params, None)
-    }
-
-    /// The same with the numbers of an array on its nodes.
-    pub fn prepared_with(&self, params: &PrepareParams, array: Option<&str>) -> Result<PreparedNetwork, Failure> {
-        let file = self.file_with(&self.options(params.radii).node_array(array.map(str::to_owned)))?;
-        let prepared = prepare_lines(&file.skeleton, &file.groups, params);
+        let NetworkFile { skeleton, notes, groups, .. } = self.file(params.radii)?;
+        let prepared = prepare(&skeleton, &groups, params);
         let prepared =
             prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
-        let Prepared { skeleton, given, outline, report } = prepared;
-        let NetworkFile { notes, names, roots, node_values, .. } = file;
-        Ok(PreparedNetwork { given, outline, skeleton, notes, report, names, roots, node_values })
+        let Prepared { skeleton, report, .. } = prepared;
+        Ok(PreparedNetwork { skeleton, notes, report })
     }
 
     /// Reads and cleans the network.
@@ -134,9 +118,9 @@ impl NetworkArgs {
 }
 
 impl Network {
-    /// The terminals that become inlets, of which some may be asked for as the file calls them.
-    pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
-        inlets(&self.skeleton, &self.names, &self.roots, asked)
+    /// The terminals that become inlets.
+    pub fn inlets(&self) -> Result<Inlets, Failure> {
+        Inlets::of(&self.skeleton, &self.names, &self.roots, &[]).map_err(|e| Failure::input(e.to_string()))
     }
 
     /// Lines for people on what was read and cleaned.
@@ -145,53 +129,4 @@ impl Network {
         lines.extend(self.cleaned.counts().iter().map(|(count, what)| format!("{count} {what}")));
         lines
     }
-}
-
-impl PreparedNetwork {
-    /// How long edges are asked to be by an array of the file.
-    pub fn sizes(&self, array: &str) -> Result<SizeAt, Failure> {
-        let sizes = NodeSizes::new(array, &self.node_values).map_err(|BadSize { node, value }| {
-            Failure::input(format!(
-                "--size-at {array}: node {} has the value {value}; each node needs a finite number above zero (1: edges as \
-                 rho has them): correct the array",
-                self.names.of(node)
-            ))
-        });
-        sizes.map(SizeAt::Nodes)
-    }
-
-    /// Nothing but what is to be meshed: large networks ask for the room of the rest.
-    pub fn into_skeleton(self) -> Skeleton {
-        self.skeleton
-    }
-
-    /// Without what a mesh would be held against, where there will be none.
-    pub fn without_given(self) -> Self {
-        Self { given: Skeleton::default(), outline: Skeleton::default(), ..self }
-    }
-
-    /// The terminals that become inlets, of which some may be asked for as the file calls them.
-    pub fn inlets(&self, asked: &[String]) -> Result<Inlets, Failure> {
-        inlets(&self.skeleton, &self.names, &self.roots, asked)
-    }
-
-    /// Lines for people on what was read and done; with `all` at length.
-    pub fn remarks(&self, all: bool) -> Vec<String> {
-        let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
-        if self.report.changed() {
-            lines.extend(text(&self.report, all).lines().map(ToString::to_string));
-        }
-        lines
-    }
-}
-
-fn inlets(skeleton: &Skeleton, names: &NodeNames, roots: &[NodeId], asked: &[String]) -> Result<Inlets, Failure> {
-    Inlets::of(skeleton, names, roots, asked).map_err(|NoTerminal { node, vessels }| {
-        Failure::usage(match vessels {
-            Some(vessels) => format!(
-                "--root: node {node} is no terminal, as {vessels} vessels meet there; name a node with one vessel"
-            ),
-            None => format!("--root: node {node} is not in the network; name a terminal as the file does"),
-        })
-    })
 }

@@ -107,7 +107,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// Reads a network and finds its roots.
 pub fn vessels(args: &NetworkArgs) -> Result<(Skeleton, Vec<NodeId>), Failure> {
     let network = args.read()?;
-    let inlets: FxHashSet<u32> = network.inlets(&[])?.list.iter().map(|inlet| inlet.original).collect();
+    let inlets: FxHashSet<u32> = network.inlets()?.list.iter().map(|inlet| inlet.original).collect();
     let skeleton = network.skeleton;
     let roots = skeleton.node_ids().filter(|&n| inlets.contains(&skeleton.node(n).original)).collect();
     Ok((skeleton, roots))

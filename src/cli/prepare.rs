@@ -9,7 +9,7 @@ use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
 use crate::prepare::{PrepareParams, PrepareReport, Touching, directed};
-use crate::report::prepare::{row_of, text};
+use crate::report::prepare::row_of;
 use anastomesh_io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 
 #[derive(Debug, clap::Args)]
@@ -115,11 +115,6 @@ impl CureArgs {
         params.radius_tolerance = self.radius_tolerance;
         params
     }
-
-    /// Whether anything is done about tips that have no room for a cap.
-    pub fn touches(&self) -> bool {
-        self.params(true).touching != Touching::Keep
-    }
 }
 
 /// Prepares a network and writes it.
@@ -141,7 +136,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         for note in &prepared.notes {
             log::note(&super::hint::of_note(note));
         }
-        let cures = text(&prepared.report, args.common.verbose);
+        let cures = prepared.report.text(args.common.verbose);
         log::result(&format!("{cures}{}{}", row_of(&prepared.report), ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)

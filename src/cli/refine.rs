@@ -7,18 +7,21 @@ use serde::Serialize;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::log;
-use super::network::{NetworkArgs, PreparedNetwork};
+use super::network::NetworkArgs;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
-use super::stop::{NOTHING_KEPT, Stop};
+use super::run::{refine_failure, remarks};
+use super::stop::Stop;
 use crate::prepare::PrepareReport;
-use crate::refine::{self, Crowded, Freedom, Metric, RefineError, RefineParams, RefineReport, Refined, Residual};
+use crate::refine::{Crowded, Freedom, Metric, RefineParams, RefineReport, Residual, refine};
 use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{brief, csv, panels};
 use anastomesh_io::network::{ensure_network_writable, refinement_arrays, write_network};
 use anastomesh_io::write_text;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -160,56 +163,23 @@ struct Output<'a> {
     report: &'a RefineReport,
 }
 
-/// Refines a network, with a bar; and with which parameters that was done in the end.
-pub(super) fn moved(
-    network: &PreparedNetwork,
-    params: RefineParams,
-    common: &Common,
-    stop: &Stop,
-) -> Result<(Refined, RefineParams), Failure> {
-    let params = fitting(network, params);
-    Ok((moved_so(network, &params, common, stop)?, params))
-}
-
-/// Parameters that know whether the network was measured: polylines that were resampled do not look so any more.
-pub(super) fn fitting(network: &PreparedNetwork, params: RefineParams) -> RefineParams {
-    if params.freedom == Freedom::Auto && network.report.measured {
-        return RefineParams { freedom: Freedom::Measured, ..params };
-    }
-    params
-}
-
-/// Refines a network with parameters that fit it, with a bar.
-pub(super) fn moved_so(
-    network: &PreparedNetwork,
-    params: &RefineParams,
-    common: &Common,
-    stop: &Stop,
-) -> Result<Refined, Failure> {
-    let refined = refine::refine(&network.skeleton, params, &Bars::new(common.quiet, common.progress, stop.clone()));
-    refined.map_err(|e| match e {
-        RefineError::Skeleton(_) => Failure::input(e.to_string()),
-        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
-        _ => Failure::usage(e.to_string()),
-    })
-}
-
 /// Refines a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     args.report.ensure_writable()?;
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?.without_given();
+    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     if !args.common.quiet {
-        for remark in network.remarks(args.common.verbose) {
+        for remark in remarks(&network.notes, &network.report, args.common.verbose) {
             log::note(&remark);
         }
     }
-    let params = RefineParams { every: args.every, ..args.how.params(args.iterations) };
+    let params = RefineParams { every: args.every, ..args.how.params(args.iterations) }.fitted(network.report.measured);
     let stop = Stop::listen(args.common.quiet)?;
-    let (refined, params) = pool.install(|| moved(&network, params, &args.common, &stop))?;
+    let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
+    let refined = pool.install(|| refine(&network.skeleton, &params, &bars)).map_err(|e| refine_failure(&e))?;
     stop.keep();
-    write(&args.output, &refined)?;
+    write(&args.output, &refined.skeleton, &refined.origin)?;
     let report = &refined.report;
     for (path, text) in [(&args.metrics, csv as fn(&RefineReport) -> String), (&args.plot, |r| svg(&panels(r)))] {
         if let Some(path) = path {
@@ -236,7 +206,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 /// Writes a refined network.
-pub(super) fn write(path: &Path, refined: &Refined) -> Result<(), Failure> {
-    let arrays = refinement_arrays(&refined.skeleton, &refined.origin);
-    write_network(path, &refined.skeleton, &arrays).map_err(|e| Failure::input(e.to_string()))
+pub(super) fn write(path: &Path, network: &Skeleton, origin: &[Point3]) -> Result<(), Failure> {
+    let arrays = refinement_arrays(network, origin);
+    write_network(path, network, &arrays).map_err(|e| Failure::input(e.to_string()))
 }

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::before::{Before, Made, Meshing};
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
@@ -15,9 +14,13 @@ use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
+use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::pipeline::{Clock, Estimate, MeshPlan, RunError, RunReport};
+use crate::pipeline::{Clock, Estimate, MeshPlan, RunReport};
+use crate::prepare::PrepareReport;
+use crate::refine::RefineReport;
 use crate::report::summary::Summary;
+use crate::run::{MeshingError, Networks, PreparedRun, Run};
 use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
 use anastomesh_io::volume::MeshNotes;
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
@@ -50,45 +53,50 @@ pub struct Args {
 struct Output<'a> {
     program: &'static str,
     plan: &'a MeshPlan,
-    #[serde(flatten)]
-    before: &'a Before,
+    prepare: &'a PrepareReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<&'a RefineReport>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
 }
 
 /// Makes the wall of a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut plan = MeshPlan { hollow: true, ..args.blocks.plan(args.how.fuses()) };
+    let plan = MeshPlan { hollow: true, ..args.blocks.plan(args.how.fuses()) };
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     ensure_boundary_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.blocks.read(&args.network, &args.cures.params(true), &mut plan))?;
+    let prepared = pool.install(|| args.prepared(plan))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    for remark in network.remarks(args.common.verbose) {
+    for remark in remarks(&prepared.notes, &prepared.networks.prepare, args.common.verbose) {
         bars.note(&remark);
     }
-    let moved = |iterations| {
-        let params = args.how.params(iterations);
-        pool.install(|| super::refine::moved(&network, params, &args.common, &stop))
-    };
-    let refined = args.blocks.refine.map(moved).transpose()?;
-    if let Some((refined, _)) = refined.as_ref().filter(|_| args.common.verbose && !args.common.json) {
-        log::note(&refined.report.to_string());
+    let prepared = pool.install(|| prepared.refined(None, &bars)).map_err(|e| args.explain_alone(e))?;
+    if let Some(report) = prepared.networks.refine.as_ref().filter(|_| args.common.verbose && !args.common.json) {
+        log::note(&report.to_string());
     }
-    let before = Before::new(network, refined);
     stop.keep();
-    pool.install(|| args.make(before, &plan, &bars))
+    pool.install(|| args.make(prepared, &bars))
 }
 
 impl Args {
-    fn make(&self, before: Before, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
-        let rough = Estimate::rough(&before.network, plan);
-        let (_, store) = BlockPlace::beside(&self.output, &rough, plan.memory)?;
+    /// The network, read and prepared.
+    fn prepared(&self, mut plan: MeshPlan) -> Result<PreparedRun, Failure> {
+        let cures = self.cures.params(true);
+        let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
+        let mut run = Run::new(file).plan(plan).prepare(cures);
+        if let Some(iterations) = self.blocks.refine {
+            run = run.refine(self.how.params(iterations));
+        }
+        run.prepared().map_err(|e| self.explain_alone(e))
+    }
+
+    fn make(&self, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
+        let plan = &run.plan.clone();
+        let (_, store) = BlockPlace::beside(&self.output, &run.rough_estimate(), plan.memory)?;
         let fits = |estimate: &Estimate| limits::block_fits(estimate, plan);
-        let how = Meshing { store: &store, plan, fits: &fits, touches: self.cures.touches(), bars };
-        let Made { stored: mut made, before } =
-            before.mesh(how).map_err(|(e, before)| self.explain(e, plan, &before))?;
+        let mut made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, plan))?;
         let notes = MeshNotes {
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("surface {}", self.blocks.typed()),
@@ -100,13 +108,13 @@ impl Args {
         };
         let mut clock = Clock::default();
         let write = || {
-            let surface = BoundarySurface::new(&made.whole, faces).map_err(|e| failed(&e))?;
+            let surface = BoundarySurface::new(&made.mesh, faces).map_err(|e| failed(&e))?;
             write_boundary_watched(&self.output, &surface, &notes, bars).map_err(|e| failed(&e))
         };
         clock.time(bars, Stage::Write, 0, write)?;
         made.report.stages.extend(clock.stages());
-        self.print(plan, &before, &made.report, Some(&made.check))?;
-        let invalid = !made.check.is_valid() || !made.report.keeps_vessels(plan.fuse);
+        self.print(plan, &made.networks, &made.report, Some(&made.check))?;
+        let invalid = !made.is_valid();
         self.blocks.advise(&made.report, invalid);
         Ok(match () {
             () if !made.report.failed.is_empty() => Exit::StageFailed,
@@ -116,35 +124,34 @@ impl Args {
     }
 
     /// What went wrong, for people.
-    fn explain(&self, error: RunError, plan: &MeshPlan, before: &Before) -> Failure {
-        match error {
-            RunError::BlocksFailed(report) => {
-                if let Err(failure) = self.print(plan, before, &report, None) {
-                    return failure;
-                }
-                self.blocks.advise(&report, true);
-                Failure::stage(format!(
-                    "{} block(s) have no sound surface, named above. --keep-going leaves them out",
-                    report.failed.len()
-                ))
-            }
-            RunError::Cancelled => Failure::stopped(NOTHING_KEPT),
-            RunError::Root(_) | RunError::Plan(_) => Failure::usage(error.to_string()),
-            RunError::TooLarge(_) | RunError::Store(_) => Failure::input(hint::of_run(&error)),
-            _ => Failure::stage(error.to_string()),
+    fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
+        let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        if let Err(failure) = self.print(plan, &networks, &report, None) {
+            return failure;
         }
+        self.blocks.advise(&report, true);
+        Failure::stage(format!(
+            "{} block(s) have no sound surface, named above. --keep-going leaves them out",
+            report.failed.len()
+        ))
+    }
+
+    /// What ends a run before there are blocks to speak of.
+    fn explain_alone(&self, error: MeshingError) -> Failure {
+        failure(error, &self.network.network, || Failure::stopped(NOTHING_KEPT))
     }
 
     fn print(
         &self,
         plan: &MeshPlan,
-        before: &Before,
+        networks: &Networks,
         run: &RunReport,
         check: Option<&CheckReport>,
     ) -> Result<(), Failure> {
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            return print(true, &Output { program, plan, before, run, check }, String::new);
+            let Networks { prepare, refine, .. } = networks;
+            return print(true, &Output { program, plan, prepare, refine: refine.as_ref(), run, check }, String::new);
         }
         // What is wrong is an error, which --quiet does not silence.
         let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());

@@ -5,17 +5,12 @@ use std::path::{Path, PathBuf};
 use super::common::print;
 use super::exit::{Exit, Failure};
 use super::hint;
-use super::limits::{self, BlockPlace};
+use super::limits::BlockPlace;
 use super::log;
 use super::progress::Bars;
-use crate::pipeline::{
-    KeyMaker, Manifest, MeshPlan, NoShard, Role, RunError, Shard, ShareReport, Store, StoreError, fingerprint,
-    make_share, two_numbers,
-};
-use crate::refine::{RefineParams, Refined};
+use crate::pipeline::{Manifest, MeshPlan, NoShard, Role, Shard, ShareReport, Store, StoreError};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::units::{grouped, seconds_of};
-use anastomesh_skeleton::Skeleton;
 
 /// Where finished blocks are kept, and by how many runs.
 #[derive(Debug, clap::Args)]
@@ -28,7 +23,7 @@ pub struct WorkArgs {
     restart: bool,
     /// Make only the I-th of N shares of the blocks, counted from 1, and write no mesh: any number of these at a time, on any
     /// number of machines; then the same command without this finds all blocks
-    #[arg(long, help_heading = "Run", value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = two_numbers)]
+    #[arg(long, help_heading = "Run", value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = Shard::two_numbers)]
     shard: Option<(u32, u32)>,
     /// Make what shards have left undone instead of refusing it
     #[arg(long, help_heading = "Run", requires = "dir", conflicts_with = "shard")]
@@ -60,49 +55,15 @@ impl WorkArgs {
         Shard::new(number, of).map(Some).map_err(|e: NoShard| Failure::input(e.to_string()))
     }
 
-    /// Opens the work directory, if one is given. What it belongs to is told by the network and everything in `options`.
-    pub fn open(
-        &self,
-        shard: Option<Shard>,
-        network: &Skeleton,
-        options: impl FnOnce() -> serde_json::Value,
-    ) -> Result<Option<WorkDir>, Failure> {
+    /// Opens the work directory, if one is given; `manifest` says what it belongs to.
+    pub fn open(&self, shard: Option<Shard>, manifest: impl FnOnce() -> Manifest) -> Result<Option<WorkDir>, Failure> {
         let Some(dir) = &self.dir else { return Ok(None) };
         let role = match shard {
             Some(shard) => Role::Shard(shard),
             None => Role::Alone { restart: self.restart, make_missing: self.make_missing },
         };
-        let store = Store::in_folder_as(role, dir, &Manifest::new(network, options()))?;
+        let store = Store::in_folder_as(role, dir, &manifest())?;
         Ok(Some(WorkDir { place: BlockPlace::Folder(dir.clone()), store }))
-    }
-}
-
-impl WorkDir {
-    /// The refined network that another run has left here, or what `make` gives.
-    pub fn refined(
-        &self,
-        network: &Skeleton,
-        params: &RefineParams,
-        progress: &dyn Progress,
-        make: impl FnOnce() -> Result<Refined, Failure>,
-    ) -> Result<Refined, Failure> {
-        let key = || {
-            let mut key = KeyMaker::new("refined");
-            key.text(&format!("{:?} {params:?}", fingerprint(network)));
-            key.finish()
-        };
-        self.store.once(("refined", key), progress, make)
-    }
-
-    /// Makes a shard, and says so.
-    pub fn make_shard(
-        &self,
-        shard: Shard,
-        (network, plan): (Skeleton, &MeshPlan),
-        bars: &Bars,
-    ) -> Result<ShareReport, RunError> {
-        let fits = |estimate: &_| limits::block_fits(estimate, plan);
-        make_share(&self.store, network, plan, shard, &fits, bars)
     }
 }
 

@@ -22,6 +22,7 @@ pub struct Bin {
 /// Deviation of the wall from the given radius along branches between bifurcations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
+    /// Parts of the length, in order.
     pub bins: Vec<Bin>,
 }
 

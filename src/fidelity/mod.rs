@@ -3,11 +3,11 @@
 //! A valid mesh may still misrepresent the network: a displaced axis, an enlarged lumen, or a wall off the radius. The
 //! given network is therefore compared with the meshed network (axis and volume) and with the wall.
 
-#[cfg(feature = "cli")]
 mod along;
 mod axis;
 mod lumen;
 mod spread;
+mod text;
 mod tubes;
 mod wall;
 
@@ -17,7 +17,6 @@ use serde::Serialize;
 use spread::Spread;
 use std::io;
 
-#[cfg(feature = "cli")]
 pub use along::Along;
 pub use axis::{Displaced, Displacements};
 pub use tubes::Tubes;

@@ -16,7 +16,7 @@ pub struct Orders {
 }
 
 /// Maximum number of rounds.
-const ROUNDS: usize = 100;
+const MAX_ORDER_PASSES: usize = 100;
 
 impl Orders {
     /// Computes the orders of the vessels of a network with equal inflow at each inlet.
@@ -40,7 +40,7 @@ impl Orders {
         let radii: Vec<f64> = branches.iter().map(|branch| radius(&branch.edges)).collect();
         let order = |edges: &[EdgeId]| edges.iter().map(|e| strahler[e.index()]).max().unwrap_or(1);
         let mut orders: Vec<u32> = branches.iter().map(|branch| order(&branch.edges)).collect();
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ORDER_PASSES {
             let bounds = bounds(&orders, &radii);
             let moved: Vec<u32> = radii.iter().map(|&r| 1 + bounds.iter().filter(|&&b| r > b).count() as u32).collect();
             if moved == orders {

@@ -5,8 +5,8 @@ use super::tree::{Tree, weiszfeld};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, Vec3, point_tube};
 use rayon::prelude::*;
 
-/// Rounds of sweeps and clearing.
-const ROUNDS: usize = 6;
+/// Passes of relaxation, each a number of sweeps and a clearing of thick vessels.
+const RELAXATION_PASSES: usize = 6;
 
 /// Sweeps over all bifurcations per round, and final sweeps over squeezed ones.
 const SWEEPS: usize = 10;
@@ -29,7 +29,7 @@ const APART: f64 = 8.0;
 /// Relaxes a tree whose vessels have the given radii, by node. Moves bifurcations, and terminals inside thick vessels.
 pub fn relax(tree: &mut Tree, radii: &[f64]) {
     let parity = levels(tree);
-    for _ in 0..ROUNDS {
+    for _ in 0..RELAXATION_PASSES {
         for _ in 0..SWEEPS {
             sweep(tree, &parity, |tree, fork| better(tree, radii, fork));
         }

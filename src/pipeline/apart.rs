@@ -28,8 +28,8 @@ pub struct Apart {
     rounds: usize,
 }
 
-/// How often vessels are left uncut because their connectors meet something.
-const ROUNDS: usize = 2;
+/// Maximum passes that leave vessels uncut because their connectors intersect another block.
+const MAX_UNCUT_PASSES: usize = 2;
 
 impl Apart {
     /// Decides what is done about meetings of blocks; no when nothing is left to try.
@@ -48,7 +48,7 @@ impl Apart {
         let connectors = stuck.flatten().filter(|&&block| !is_cluster(block));
         let branches: Vec<BranchId> =
             connectors.map(|&i| partition.branch_of_cut(CutId(i - clusters as u32))).collect();
-        if !branches.is_empty() && self.rounds < ROUNDS {
+        if !branches.is_empty() && self.rounds < MAX_UNCUT_PASSES {
             self.rounds += 1;
             self.uncut.extend(branches);
             self.met.clear();

@@ -67,6 +67,8 @@ pub struct Caps {
     /// In the order of their patches as the mesh has them.
     pub rows: Vec<CapRow>,
     fluid: Fluid,
+    /// Outlets that are one patch.
+    outlets: Outlets,
 }
 
 impl Caps {
@@ -106,7 +108,7 @@ impl Caps {
                 is_inlet,
             }
         };
-        Ok(Self { rows: caps.into_iter().map(row).collect(), fluid })
+        Ok(Self { rows: caps.into_iter().map(row).collect(), fluid, outlets: Outlets::Separate })
     }
 
     /// Makes outlets one patch. What the mesh is then; none where it stays as it is.
@@ -116,6 +118,7 @@ impl Caps {
             Outlets::Grouped => false,
             Outlets::ByOrder => true,
         };
+        self.outlets = outlets;
         let of_row = |row: &CapRow| if by_order { row.order } else { 0 };
         let name = |group: u32| if by_order { format!("outlets_order_{group}") } else { "outlets".to_owned() };
         let left = mesh.patches().iter().filter(|patch| patch.cap.is_none() || patch.is_inlet());
@@ -131,6 +134,11 @@ impl Caps {
             (row.id, row.name) = (groups[&group], name(group));
         }
         Some(Relabelled::new(mesh, patches, ids))
+    }
+
+    /// Whether outlets share patches.
+    pub fn is_grouped(&self) -> bool {
+        self.outlets != Outlets::Separate
     }
 
     /// The nodes of inlets, whose caps are patches of their own in any case.

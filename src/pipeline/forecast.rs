@@ -16,13 +16,16 @@ const TETS_PER_SECOND: f64 = 3.1e5;
 /// Memory of the program itself, with a network of some thousand edges.
 const AT_LEAST: u64 = 60_000_000;
 
-/// Blocks, and what they will take.
+/// Number of blocks of a network, and estimate of what they take.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Forecast {
+    /// Number of clusters.
     pub clusters: usize,
+    /// Number of connectors.
     pub connectors: usize,
     /// Nodes of the largest cluster.
     pub largest_nodes: usize,
+    /// Tetrahedra, memory and disk.
     pub estimate: Estimate,
 }
 

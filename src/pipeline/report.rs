@@ -1,5 +1,7 @@
 //! What a run of the mesher did.
 
+mod text;
+
 use super::timing::{BlockTimes, StageTime};
 use crate::block::{Astray, ThinLayers};
 use serde::Serialize;

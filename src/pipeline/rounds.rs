@@ -27,8 +27,8 @@ use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{BranchId, Overlaps};
 use anastomesh_tet::parts::Watch;
 
-/// How often the partition is changed because of blocks that fail.
-const ROUNDS: usize = 6;
+/// Maximum changes of the partition because of blocks that fail.
+const MAX_PARTITION_CHANGES: usize = 6;
 
 /// What a run works with.
 pub struct RunContext<'a> {
@@ -66,7 +66,8 @@ impl RunContext<'_> {
             }
             let blocks = self.pass(partition, before)?;
             self.tell_cured(&blocks, &mut told, &mut retries);
-            let found = if round < ROUNDS { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
+            let found =
+                if round < MAX_PARTITION_CHANGES { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
             if found.is_empty() {
                 return Ok(Blocks { retries, ..blocks });
             }

@@ -41,6 +41,8 @@ pub struct Meshed {
     pub check: CheckReport,
     /// What was done.
     pub report: RunReport,
+    /// Network that was meshed: the given one with nodes of more than three vessels split.
+    pub network: Arc<Skeleton>,
 }
 
 /// A mesh whose blocks are in a store, what it has to be, what was found, what was done.
@@ -55,6 +57,8 @@ pub struct Stored<'a> {
     pub check: CheckReport,
     /// What was done.
     pub report: RunReport,
+    /// Network that was meshed: the given one with nodes of more than three vessels split.
+    pub network: Arc<Skeleton>,
 }
 
 /// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
@@ -74,17 +78,25 @@ pub struct Stored<'a> {
 /// # Errors
 /// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
 pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
-    let (store, network) = (Store::in_memory(), &Arc::new(network.clone()));
-    let clock = &mut Clock::default();
+    mesh_in_memory(&Arc::new(network.clone()), plan, progress)
+}
+
+/// Meshes a shared network in memory.
+pub(crate) fn mesh_in_memory(
+    network: &Arc<Skeleton>,
+    plan: &MeshPlan,
+    progress: &dyn Progress,
+) -> Result<Meshed, RunError> {
+    let (store, clock) = (Store::in_memory(), &mut Clock::default());
     #[cfg(feature = "woven")]
     if plan.smooths_joints() {
         return mesh_smoothed(&store, network, plan, progress, clock);
     }
-    let Stored { whole, expectation, check, mut report } =
+    let Stored { whole, expectation, check, mut report, network } =
         mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
     let mesh = clock.time(progress, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report })
+    Ok(Meshed { mesh, expectation, check, report, network })
 }
 
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
@@ -118,7 +130,7 @@ pub fn mesh_into<'a>(
     mesh_shared(store, &Arc::new(network.clone()), plan, fits, progress)
 }
 
-/// The same of a network that is held by others, too.
+/// Meshes a shared network into a store.
 pub(crate) fn mesh_shared<'a>(
     store: &'a Store,
     network: &Arc<Skeleton>,
@@ -155,13 +167,14 @@ fn mesh_timed<'a>(
             continue;
         }
         // What is in memory for the blocks is not while the rest is checked.
+        let meshed = Arc::clone(&job.skeleton);
         let (mut report, expectation) = job.described(blocks)?;
         let rest = || looked.check(whole.patches(), Some(&expectation));
         let PartsCheck { report: check, .. } = clock.time(progress, Stage::Check, 0, rest)?;
         ask(progress)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
-        return Ok(Stored { whole, expectation, check, report });
+        return Ok(Stored { whole, expectation, check, report, network: meshed });
     }
 }
 
@@ -175,6 +188,7 @@ fn mesh_smoothed(
     clock: &mut Clock,
 ) -> Result<Meshed, RunError> {
     let job = Job::of(network, plan, store, progress, clock)?;
+    let network = Arc::clone(&job.skeleton);
     let mut blocks = job.run(clock).build(&BTreeSet::new(), None, &|_| Ok(()))?;
     let whole = job.numbered(&mut blocks, clock)?;
     let (mut report, expectation) = job.described(blocks)?;
@@ -189,7 +203,7 @@ fn mesh_smoothed(
     let check = clock.time(progress, Stage::Check, 0, check);
     report.mesh = mesh_size(&mesh)?;
     report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report })
+    Ok(Meshed { mesh, expectation, check, report, network })
 }
 
 /// What is to be meshed, and where.
@@ -237,7 +251,6 @@ impl<'a, 'b> Job<'a, 'b> {
         let number = || Whole::new(store, *progress, skeleton, blocks, terminals);
         if blocks.any_failed() && (nothing_left || !plan.keep_going) {
             // What there is can be looked at.
-            #[cfg(feature = "cli")]
             if !nothing_left {
                 number()?.leave()?;
             }
@@ -247,7 +260,6 @@ impl<'a, 'b> Job<'a, 'b> {
             return Err(RunError::BlocksFailed(Box::new(report)));
         }
         let whole = clock.time(*progress, Stage::Merge, 0, number)?;
-        #[cfg(feature = "cli")]
         whole.leave()?;
         Ok(whole)
     }

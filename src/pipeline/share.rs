@@ -49,7 +49,7 @@ pub struct ShareReport {
 /// See [`RunError`]; a block that fails is none.
 pub fn make_share(
     store: &Store,
-    network: Skeleton,
+    network: Arc<Skeleton>,
     plan: &MeshPlan,
     shard: Shard,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
@@ -57,7 +57,8 @@ pub fn make_share(
 ) -> Result<ShareReport, RunError> {
     plan.validate()?;
     let mut clock = Clock::default();
-    let skeleton = split_shared(&Arc::new(network)).0;
+    let skeleton = split_shared(&network).0;
+    drop(network);
     let shop = Workshop { skeleton: &skeleton, plan, store };
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
     let mut run = RunContext { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };

@@ -1,7 +1,8 @@
-//! Which terminal is an inlet, which an outlet, and what their patches are called.
+//! Patches of terminals: ids and names.
 
 use std::collections::BTreeMap;
 
+use super::inlets::{self, InletReason};
 use anastomesh_mesh::WALL;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
@@ -24,28 +25,24 @@ pub struct NotATerminal {
 
 /// Assigns patches: inlets get 2, 3, … (`inlet`, `inlet_1`, …), the outlets follow (`outlet_0`, …).
 ///
-/// Inlets are the terminals whose `original` index is in `roots`; in a component without one, the terminal of largest
-/// radius (of equals, the first). Order is that of the nodes.
+/// Inlets are the terminals whose `original` index is in `roots`, completed by [`inlets::complete`]. Order is that of the
+/// nodes.
 ///
 /// # Errors
 /// When a root is not a terminal of the skeleton.
 pub fn assign(skeleton: &Skeleton, roots: &[u32]) -> Result<TerminalPatches, NotATerminal> {
     let adjacency = skeleton.adjacency();
-    let components = skeleton.components(&adjacency);
     let terminals = adjacency.terminals();
     let original = |n: NodeId| skeleton.node(n).original;
     if let Some(&node) = roots.iter().find(|&&root| !terminals.iter().any(|&t| original(t) == root)) {
         return Err(NotATerminal { node });
     }
-    let mut inlets: Vec<NodeId> = terminals.iter().copied().filter(|&t| roots.contains(&original(t))).collect();
-    let component = |n: NodeId| components.of_node[n.index()] as usize;
-    let mut rooted = vec![false; components.list.len()];
-    for &inlet in &inlets {
-        rooted[component(inlet)] = true;
+    let mut reasons = vec![None; skeleton.nodes.len()];
+    for &terminal in terminals.iter().filter(|&&t| roots.contains(&original(t))) {
+        reasons[terminal.index()] = Some(InletReason::Asked);
     }
-    let widest = skeleton.roots(&adjacency, &components);
-    inlets.extend(widest.into_iter().flatten().filter(|&n| !rooted[component(n)]));
-    inlets.sort_unstable();
+    inlets::complete(skeleton, &adjacency, &mut reasons);
+    let inlets: Vec<NodeId> = skeleton.node_ids().filter(|n| reasons[n.index()].is_some()).collect();
     Ok(TerminalPatches { of: names(&terminals, &inlets) })
 }
 

@@ -1,7 +1,6 @@
 //! The whole mesh as a plan over stored blocks: which number each vertex and tetrahedron gets, and passes over them in
 //! that order. Nothing but the plan is held; blocks are read when their turn comes.
 
-#[cfg(feature = "cli")]
 mod left;
 mod numbering;
 
@@ -24,7 +23,6 @@ use anastomesh_mesh::{Patch, WALL};
 use anastomesh_skeleton::Skeleton;
 use numbering::{Numbering, PartPlan};
 
-#[cfg(feature = "cli")]
 pub use left::LeftWhole;
 
 /// The whole mesh: a plan, and the store of its blocks.

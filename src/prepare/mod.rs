@@ -15,6 +15,7 @@ mod resample;
 mod short_tips;
 mod smooth;
 mod spurs;
+mod text;
 mod touching;
 
 pub use directed::directed;
@@ -26,6 +27,7 @@ pub use report::{PrepareReport, Size};
 pub use resample::ResampleReport;
 pub use short_tips::ShortTip;
 pub use spurs::{Spur, SpurReason};
+pub use text::touching_text;
 pub use touching::{TouchedBy, Touching, TouchingTip, take_back};
 
 use anastomesh_skeleton::{LineGroup, Skeleton, SkeletonError, clean};
@@ -134,12 +136,7 @@ pub struct Prepared {
 /// # Errors
 /// A number is unusable (with `radii`: a position, or all radii), an edge refers to a missing node, or no vessel
 /// remains.
-pub fn prepare(raw: &Skeleton, params: &PrepareParams) -> Result<Prepared, SkeletonError> {
-    prepare_lines(raw, &[], params)
-}
-
-/// Prepares a network with known line groups per node (an empty slice if unknown).
-pub(crate) fn prepare_lines(
+pub fn prepare(
     raw: &Skeleton,
     groups: &[Option<LineGroup>],
     params: &PrepareParams,

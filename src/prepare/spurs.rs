@@ -8,7 +8,7 @@ use serde::Serialize;
 const LONGEST: f64 = 4.0;
 
 /// Maximum rounds: a branch point with n spurs needs n. Larger numbers belong to no vessel.
-const ROUNDS: usize = 100;
+const MAX_SPUR_PASSES: usize = 100;
 
 /// Reason why a branch is a spur.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Spur {
 /// join to one vessel.
 pub(super) fn take_off(skeleton: &Skeleton) -> Result<(Skeleton, Vec<Spur>), SkeletonError> {
     let (mut current, mut all) = (skeleton.clone(), Vec::new());
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_SPUR_PASSES {
         let adjacency = current.adjacency();
         let branches = current.branches(&adjacency);
         let found = spurs(&current, &adjacency, &branches);

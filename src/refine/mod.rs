@@ -17,6 +17,7 @@ mod solve;
 mod split;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};

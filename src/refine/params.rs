@@ -153,6 +153,14 @@ pub enum RefineError {
 }
 
 impl RefineParams {
+    /// Parameters for a network of which it is known whether it is measured: polylines that were resampled do not look so any
+    /// more.
+    #[must_use]
+    pub fn fitted(self, measured: bool) -> Self {
+        let freedom = if measured && self.freedom == Freedom::Auto { Freedom::Measured } else { self.freedom };
+        Self { freedom, ..self }
+    }
+
     pub(super) fn check(&self) -> Result<(), RefineError> {
         let at_least_0 = "0 or more";
         let all = [

@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Deserialize, Serialize};
 
 /// Maximum shrink rounds: a vessel may have several obstacles, and each round treats one.
-const ROUNDS: usize = 12;
+const MAX_SHRINK_PASSES: usize = 12;
 /// Length over which a shrunk radius recovers, in radii.
 const TAPER: f64 = 3.0;
 /// Minimum length of the pieces created by shrinking, in radii.
@@ -95,7 +95,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     let place: FxHashMap<[EdgeId; 2], usize> = found.iter().enumerate().map(|(i, o)| (o.edges, i)).collect();
     let edges_before = shrinker.skeleton.edges.len();
     let mut touched = vec![false; edges_before];
-    for round in 0..ROUNDS {
+    for round in 0..MAX_SHRINK_PASSES {
         let overlaps = shrinker.skeleton.overlaps(&shrinker.skeleton.adjacency()).pairs;
         let mut changed = false;
         for overlap in &overlaps {

@@ -1,6 +1,6 @@
 //! Report of `info` on a network.
 
-use super::inlets::Inlet;
+use crate::pipeline::Inlet;
 use anastomesh_mesh::geometry::Aabb;
 use anastomesh_mesh::units::{digits, grouped, percent};
 use anastomesh_skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};

@@ -81,7 +81,7 @@ const LONGEST_TIP: f64 = 3.0;
 const WIDTH: f64 = 1.1;
 
 /// Maximum rounds that repair a rim. Each round removes one row of triangles, so the limit is far above `DEEPEST_RIM`.
-const RIM_ROUNDS: usize = 20;
+const MAX_RIM_PASSES: usize = 20;
 /// Maximum depth before the plane, in edge lengths, of triangles removed to repair the rim.
 const DEEPEST_RIM: f64 = 4.0;
 
@@ -269,7 +269,7 @@ impl Cutter<'_> {
     /// Returns the boundary loop of the wall, counter-clockwise about the axis. Removes further triangles if the loop
     /// is pinched, has teeth, or is not single.
     fn rim(&mut self, section: &Section, tip: &mut Vec<u32>, edge: f64) -> Result<Vec<u32>, CapFailure> {
-        for _ in 0..RIM_ROUNDS {
+        for _ in 0..MAX_RIM_PASSES {
             let boundary = self.boundary(tip);
             let extra = self.spoilers(&boundary);
             if extra.is_empty() {

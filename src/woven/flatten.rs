@@ -30,7 +30,7 @@ pub(super) struct Flat {
 }
 
 /// Maximum rounds of topology repair.
-const ROUNDS: usize = 60;
+const MAX_TOPOLOGY_REPAIRS: usize = 60;
 
 struct Flattener<'a> {
     region: &'a Region,
@@ -53,7 +53,7 @@ pub(super) fn flatten(
     let mut f =
         Flattener { region, points, attempt, removed: vec![false; region.tets.len()], exposed: Vec::new(), checked: 0 };
     f.cut(seed)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_TOPOLOGY_REPAIRS {
         f.remove_folds()?;
         f.drop_islands();
         let faces = f.live_faces();

@@ -11,8 +11,8 @@ use anastomesh_mesh::{TetMesh, TriMesh, face_key};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Maximum number of rounds. Changes that touch each other take place in different rounds.
-const ROUNDS: usize = 8;
+/// Maximum passes over tetrahedra with two boundary faces. One pass changes only tetrahedra that are not neighbours.
+const MAX_CORNER_PASSES: usize = 8;
 /// Factor on the radius ratio of tetrahedra with a new vertex: they are smaller than their neighbours.
 const NEW_VERTEX_FACTOR: f64 = 0.85;
 /// Smallest radius ratio that a change may leave; otherwise the corner stays.
@@ -32,7 +32,7 @@ pub fn split_corner_tets(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn(u
     let inner = surface.points.len() as u32;
     let of = |mesh: &TetMesh, tet: usize| CornerTet::of(&faces, inner, mesh.tets[tet], tet);
     let mut changed: Vec<u32> = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_CORNER_PASSES {
         let corners: Vec<CornerTet> = (0..mesh.tets.len()).filter_map(|tet| of(mesh, tet)).collect();
         changed.extend(corners.iter().flat_map(|corner| mesh.tets[corner.tet]));
         if corners.is_empty() || !split_disjoint(mesh, &corners) {

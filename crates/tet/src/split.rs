@@ -20,7 +20,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
 /// Maximum rounds of splitting for shape.
-const ROUNDS: usize = 3;
+const MAX_SURFACE_SPLITS: usize = 3;
 
 /// Maximum triangles of the split surface.
 const MAX_TRIANGLES: usize = 20_000_000;
@@ -218,7 +218,7 @@ impl Tetrahedralizer {
         let mut round = 0;
         loop {
             let mut done = keep.run(&pieces.plc)?;
-            let split = if round < ROUNDS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
+            let split = if round < MAX_SURFACE_SPLITS { to_split(&done.mesh, &pieces, &shape) } else { Vec::new() };
             let changed = split.into_iter().filter(|&e| pieces.halve(e)).count();
             if changed == 0 {
                 pieces.name_origins(&mut done);

@@ -5,7 +5,6 @@
 
 mod arithmetic;
 mod error;
-#[cfg(feature = "cli")]
 mod extents;
 mod folder;
 mod key;
@@ -31,16 +30,14 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pub use error::{Difference, StoreError};
-#[cfg(feature = "cli")]
 pub(crate) use extents::Extents;
 pub use folder::Role;
 use key::ShortKey;
 pub use key::{Key, KeyMaker};
 use log::LogFile;
-#[cfg(feature = "cli")]
 pub(crate) use manifest::MANIFEST;
 pub use manifest::{Manifest, fingerprint};
-pub use shard::{NoShard, Shard, two_numbers};
+pub use shard::{NoShard, Shard};
 use shelf::Shelf;
 
 use crate::block::Bytes;
@@ -71,7 +68,6 @@ enum Backend {
     /// A work directory: its path, what others have written there, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
     /// What others have written, to be read only.
-    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only the viewer reads without its network"))]
     Shelf(Shelf),
 }
 

@@ -43,6 +43,16 @@ impl Shard {
         }
     }
 
+    /// Reads the number and the count of a shard, such as `3/8`, without checking their range: [`Shard::new`] does.
+    ///
+    /// # Errors
+    /// If the text is not two numbers.
+    pub fn two_numbers(text: &str) -> Result<(u32, u32), NoShard> {
+        let number = |text: &str| u32::from_str(text).ok();
+        let both = text.split_once('/').and_then(|(i, n)| number(i).zip(number(n)));
+        both.ok_or_else(|| NoShard::Text(text.into()))
+    }
+
     /// Its number, counted from 0.
     pub fn index(self) -> usize {
         self.number as usize - 1
@@ -76,22 +86,15 @@ impl fmt::Display for Shard {
     }
 }
 
-/// The two numbers alone: whether there is such a shard is told by [`Shard::new`].
-pub fn two_numbers(text: &str) -> Result<(u32, u32), NoShard> {
-    let number = |text: &str| u32::from_str(text).ok();
-    let both = text.split_once('/').and_then(|(i, n)| number(i).zip(number(n)));
-    both.ok_or_else(|| NoShard::Text(text.into()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn shards_are_counted_from_one() {
-        assert_eq!(two_numbers("3/8"), Ok((3, 8)));
+        assert_eq!(Shard::two_numbers("3/8"), Ok((3, 8)));
         for text in ["", "3", "3/", "/8", "-1/8", "3/8/2", "a/b", "3 / 8", "99999999999/8"] {
-            assert_eq!(two_numbers(text), Err(NoShard::Text(text.into())));
+            assert_eq!(Shard::two_numbers(text), Err(NoShard::Text(text.into())));
         }
         assert_eq!(Shard::new(1, 1).map(Shard::index), Ok(0));
         assert_eq!(Shard::new(8, 8).map(|s| (s.index(), s.of(), s.to_string())), Ok((7, 8, "8/8".into())));

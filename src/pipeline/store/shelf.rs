@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::io;
 use std::ops::Range;
-#[cfg(feature = "cli")]
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,14 +30,12 @@ impl Shelf {
     }
 
     /// The file of a record, and where it lies there.
-    #[cfg(feature = "cli")]
     pub(super) fn extent(&self, record: usize) -> Option<(&Path, Range<u64>)> {
         let (file, extent) = self.extents.get(record)?;
         Some((self.files.get(*file as usize)?, extent.clone()))
     }
 
     /// Of records that lie in these files.
-    #[cfg(feature = "cli")]
     pub(super) fn of(files: Vec<PathBuf>, extents: Vec<(u32, Range<u64>)>) -> Self {
         Self { files, extents, open: Mutex::default() }
     }

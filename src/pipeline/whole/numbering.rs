@@ -11,13 +11,12 @@ use anastomesh_mesh::source::SourceCounts;
 use anastomesh_mesh::{Patch, WALL};
 
 /// Parts in order: clusters by their ids, then connectors. A vertex that two parts have is numbered by the cluster.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Numbering {
     pub parts: Vec<PartPlan>,
     /// How many parts are clusters.
     pub clusters: u32,
-    #[cfg_attr(feature = "cli", serde(with = "super::left::patches"))]
+    #[serde(with = "super::left::patches")]
     pub patches: Vec<Patch>,
     /// Patch of each terminal's cap, ascending by node.
     pub patch_of: Vec<(u32, i32)>,
@@ -31,10 +30,9 @@ pub(super) struct Numbering {
 }
 
 /// One part's place in the whole. How much it holds is told by the place of the next.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct PartPlan {
-    #[cfg_attr(feature = "cli", serde(skip))]
+    #[serde(skip)]
     pub record: RecordId,
     /// Its number among all blocks, those that are missing included.
     pub block: i32,
@@ -107,7 +105,6 @@ impl Numbering {
     }
 
     /// Whether places and joints fit together, of what was read from a file.
-    #[cfg(feature = "cli")]
     pub fn is_sound(&self) -> bool {
         let ends = |plan: &PartPlan| (u64::from(plan.first_point), plan.first_tet);
         let last = self.parts.last().map_or((0, 0), ends);

@@ -3,7 +3,7 @@
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use crate::refine::RefineReport;
-use crate::report::refine::{figures_table, panels};
+use crate::report::refine::panels;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
@@ -45,6 +45,6 @@ pub fn refinement(report: &RefineReport, before: &Skeleton, after: &Skeleton) ->
             ("a median radius is", format!("{:.4}", 0.448 * report.unit)),
         ])
         .pictures(&pictures, false)?
-        .table(&["", "given", "split", "moved", "result"], &figures_table(report))
+        .table(&["", "given", "split", "moved", "result"], &report.figures_table())
         .plots(&panels(report)))
 }

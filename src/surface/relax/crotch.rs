@@ -8,7 +8,7 @@ use anastomesh_mesh::geometry::{Aabb, Point3, Vec3, self_intersections};
 /// Maximum passes. Each pass halves the edges of a web and relaxes the adjacent triangles.
 const PASSES: usize = 2;
 /// Relaxation rounds per pass.
-const ROUNDS: usize = 2;
+const SMOOTHING_PASSES: usize = 2;
 /// Minimum cosine between a web edge and the normals at its ends, pointing out of the walls.
 const LEAN: f64 = 0.35;
 /// Minimum distance of the edge's middle outside the wall, in radii.
@@ -42,7 +42,7 @@ impl<L: Level> Relaxation<'_, L> {
             if !self.split_webs(&mut before) {
                 break;
             }
-            for _ in 0..ROUNDS {
+            for _ in 0..SMOOTHING_PASSES {
                 self.flip(Criterion::Angle);
                 self.collapse_short();
                 self.smooth();

@@ -8,7 +8,7 @@ use anastomesh_mesh::quality::{radius_ratio, triangle_area_vector};
 use anastomesh_mesh::smooth::Taubin;
 
 /// Rounds of the search along the wall; the step is halved after a round without success.
-const SEARCH_ROUNDS: usize = 10;
+const MAX_SEARCH_STEPS: usize = 10;
 /// Maximum distance of a vertex from its tangent plane in Taubin smoothing, in mean edge lengths.
 const OFF_WALL: f64 = 0.25;
 /// Maximum move of a vertex along the wall in one search, in mean edge lengths.
@@ -162,7 +162,7 @@ impl Fan<'_> {
         let ways = [u, -u, w, -w, (u + w) * diagonal, (u - w) * diagonal, (w - u) * diagonal, -(u + w) * diagonal];
         let (mut best, mut worst) = (start, before);
         let mut step = 0.25 * self.edge;
-        for _ in 0..SEARCH_ROUNDS {
+        for _ in 0..MAX_SEARCH_STEPS {
             let from = best;
             for way in ways {
                 let p = from + way * step;

@@ -16,7 +16,8 @@ const GRADE: f64 = 0.5;
 const STUCK: [f64; 3] = [0.5, 0.2, 0.2];
 /// Round from which obstructing vertices return to the wall at once, and maximum rounds.
 const PATIENT: usize = 40;
-const ROUNDS: usize = 100;
+/// Maximum passes that shorten layers before the surface is refused.
+const MAX_INSET_PASSES: usize = 100;
 
 /// A surface and the wanted inner positions of its vertices.
 pub struct Places<'a> {
@@ -67,7 +68,7 @@ pub fn inset(
         let stack = Stack::new(outer, places.wall, places.is_rim.clone(), &inner, depths);
         let turned = stack.turned();
         if let Some(&first) = turned.first() {
-            if round > ROUNDS || !ways.draw_back(turned.as_flattened()) {
+            if round > MAX_INSET_PASSES || !ways.draw_back(turned.as_flattened()) {
                 return Err(TetError::Stuck { part: Obstacle::Triangle(first), reason: Stuck::Layer });
             }
             continue;
@@ -90,7 +91,7 @@ pub fn inset(
                 ways.drawn_back = if meeting.is_empty() { failures.next().unwrap_or(0.0) } else { DRAWN_BACK };
                 let in_the_way = if meeting.is_empty() { stuck(&error, &inside) } else { meeting };
                 let all = || (0..outer.len() as u32).collect::<Vec<u32>>();
-                if round > ROUNDS || !(ways.draw_back(&in_the_way) || ways.draw_back(&all())) {
+                if round > MAX_INSET_PASSES || !(ways.draw_back(&in_the_way) || ways.draw_back(&all())) {
                     return Err(error);
                 }
             }

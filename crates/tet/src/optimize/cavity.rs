@@ -15,12 +15,12 @@ const GAIN: f64 = 1.1;
 /// Factor of the worst radius ratio beside needles above which a rise in strain is accepted.
 const LEAP: f64 = 3.0;
 /// Maximum rounds over the stubborn tetrahedra.
-const ROUNDS: usize = 4;
+const MAX_STUBBORN_PASSES: usize = 4;
 
 impl Improver<'_> {
     /// Inserts and contracts vertices at tetrahedra below the stubborn limit, worst first.
     pub(super) fn treat_stubborn(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_STUBBORN_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
             let mut changes = 0;
             for &entry in &list {

@@ -13,7 +13,7 @@ const TO_BLAME: f64 = 0.1;
 /// Maximum attempts on thin tetrahedra: one per 50 tetrahedra of the mesh, but at least 50.
 const MOST: (usize, usize) = (50, 50);
 /// Maximum rounds over the remaining ones, since their surroundings may have changed.
-const ROUNDS: usize = 12;
+const MAX_FLAT_PASSES: usize = 12;
 /// Size of the cavities to reconnect, and steps of the search.
 const CAVITY: (usize, usize) = (20, 5000);
 /// Layers of tetrahedra around a flat one in which a vertex is tried.
@@ -30,7 +30,7 @@ impl Improver<'_> {
         }
         let allowance = Allowance::of(&self.c);
         let mut purse = (self.c.real_tets().count() / MOST.0).max(MOST.1);
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_FLAT_PASSES {
             let list = self.worst_first(THIN);
             let mut changes = 0;
             for &(q, t) in &list {

@@ -8,7 +8,7 @@ const MAX_RING: usize = 7;
 /// Minimum factor by which a flip must raise the worst radius ratio. It prevents endless exchanges.
 const GAIN: f64 = 1.02;
 /// Rounds over the tetrahedra that are still bad, including new ones.
-const FLIP_ROUNDS: usize = 3;
+const MAX_FLIP_PASSES: usize = 3;
 /// Rounds end if at most one of this many tetrahedra changed; the next round would fail on the same ones.
 const YIELD: usize = 50;
 
@@ -23,7 +23,7 @@ impl Improver<'_> {
     /// Removes faces and edges of tetrahedra below a radius ratio, worst first. Returns the number of changes.
     pub(super) fn flip_below(&mut self, below: f64) -> usize {
         let mut total = 0;
-        for _ in 0..FLIP_ROUNDS {
+        for _ in 0..MAX_FLIP_PASSES {
             let list = self.worst_first(below);
             let mut flips = 0;
             for &entry in &list {

@@ -18,7 +18,7 @@ const STIRRING: f64 = 1e-2;
 /// Radius ratio below which the thorough improvement leaves the vertices of a tetrahedron to the direct search.
 const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search. Its step halves in a round that finds nothing.
-const SEARCH_ROUNDS: usize = 12;
+const MAX_SEARCH_STEPS: usize = 12;
 
 /// Maximum vertices moved at the end of the thorough improvement: one per 20 tetrahedra, but at least 200. On good
 /// surfaces, that covers all.
@@ -237,7 +237,7 @@ fn search(star: &StarEnergy, start: Point3, before: f64) -> (Point3, f64) {
     let (mut best, mut value) = (start, before);
     let mut step = 0.25 * reach;
     let mut last = None;
-    for _ in 0..SEARCH_ROUNDS {
+    for _ in 0..MAX_SEARCH_STEPS {
         let from = best;
         let guide = steepest(star, &from).map_or(Vec3::zeros(), |g| g * step);
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()].map(|e| e * step);

@@ -6,12 +6,13 @@ use super::Improver;
 use super::allowance::Allowance;
 
 /// Maximum rounds over the tetrahedra that are still bad.
-const ROUNDS: usize = 8;
+const MAX_THOROUGH_PASSES: usize = 8;
 /// Sizes of the cavities to reconnect, and steps of the search in each.
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// Radius ratio below which a tetrahedron is improved at the cost of those on needles.
 const VERY_BAD: f64 = 0.2;
-const LAST_ROUNDS: usize = 3;
+/// Maximum passes that spare very bad tetrahedra at the cost of needles.
+const MAX_SPARING_PASSES: usize = 3;
 /// Minimum factor of improvement by moves.
 const GAIN: f64 = 1.1;
 /// Rounds end if at most one of this many tetrahedra improved.
@@ -57,7 +58,7 @@ impl Improver<'_> {
     /// quality.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
         let mut purse = Purse::of(self.c.real_tets().count());
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_THOROUGH_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
             if !purse.goes_on(self.strain_of_list(&list)) {
                 self.keep_list(list);
@@ -109,7 +110,7 @@ impl Improver<'_> {
         self.allowance = allowance;
         self.reconnection.forget();
         let mut purse = Purse::of(self.c.real_tets().count());
-        for _ in 0..LAST_ROUNDS {
+        for _ in 0..MAX_SPARING_PASSES {
             // Retry all: small moves, which do not count as changes, may decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);

@@ -35,7 +35,7 @@ const DEPTH: u32 = 3;
 const BUDGET: u32 = 400;
 
 /// Maximum rounds of Steiner points.
-const ROUNDS: u32 = 8;
+const MAX_STEINER_PASSES: u32 = 8;
 
 /// Recovery stops after a round that leaves more than this fraction of the previous losses. The next tier does better.
 const WORTHWHILE: f64 = 0.75;
@@ -77,7 +77,7 @@ pub(super) fn recover(
         ..RecoverySummary::default()
     };
     let mut before = usize::MAX;
-    for round in 0..=ROUNDS {
+    for round in 0..=MAX_STEINER_PASSES {
         r.round = round;
         r.dissolve();
         let total = summary.missing_edges + summary.missing_triangles;
@@ -95,13 +95,13 @@ pub(super) fn recover(
         if lost == 0 {
             return Ok(summary);
         }
-        let worthwhile = (lost as f64) < WORTHWHILE * before as f64 || (lost <= FEW && round < ROUNDS / 2);
+        let worthwhile = (lost as f64) < WORTHWHILE * before as f64 || (lost <= FEW && round < MAX_STEINER_PASSES / 2);
         before = lost;
         let hopeless = round == 0 && lost > MANY && lost as f64 > HOPELESS * total as f64;
         if hopeless || !worthwhile {
             break;
         }
-        if round < ROUNDS {
+        if round < MAX_STEINER_PASSES {
             summary.steiner_points += r.add_steiner_points(&lost_edges, &lost_faces, round);
         }
     }

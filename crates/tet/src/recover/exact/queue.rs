@@ -13,10 +13,10 @@ use crate::recover::flat::dissolve_flat;
 use anastomesh_mesh::TriMesh;
 
 /// Maximum rounds over the waiting parts.
-const ROUNDS: u64 = 6;
+const MAX_PASSES: u64 = 6;
 
 /// Maximum rounds if a large part is left, since large parts take most of the time.
-const ROUNDS_LARGE: u64 = 2;
+const MAX_PASSES_LARGE: u64 = 2;
 
 /// Round after which the remaining edges are tried in planes of facets.
 const LEVEL_AFTER: u64 = 1;
@@ -66,12 +66,12 @@ impl<'a, 'b> Queue<'a, 'b> {
     /// Recovers all missing parts.
     pub(super) fn run(mut self, missing: Missing) -> Result<(Push<'a>, ExactSummary), Failed> {
         let mut waiting = parts(&self.surface.triangles, missing);
-        for round in 0..ROUNDS {
+        for round in 0..MAX_PASSES {
             self.push.segments.deep = self.way.deep != (round % 2 == 1);
             let (stuck, last) = self.pass(&waiting, round)?;
             let Some(error) = last else { return Ok((self.push, self.summary)) };
             let large = stuck.iter().any(|part| part.edges.len() >= LARGE);
-            if round + 1 == if large { ROUNDS_LARGE } else { ROUNDS } {
+            if round + 1 == if large { MAX_PASSES_LARGE } else { MAX_PASSES } {
                 return Err(Failed { error, again: true });
             }
             waiting = stuck.into_iter().cloned().collect();

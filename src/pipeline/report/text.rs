@@ -1,7 +1,7 @@
 //! Text report of a meshing run.
 
+use super::{RunReport, ThinBlock};
 use crate::block::ThinLayers;
-use crate::pipeline::{RunReport, ThinBlock};
 use anastomesh_mesh::units::grouped;
 use std::fmt;
 

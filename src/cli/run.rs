@@ -1,0 +1,42 @@
+//! What the verbs that mesh a network say of it and of its faults.
+
+use std::path::Path;
+
+use super::exit::Failure;
+use super::stop::NOTHING_KEPT;
+use crate::pipeline::RunError;
+use crate::prepare::PrepareReport;
+use crate::refine::RefineError;
+use crate::run::MeshingError;
+use anastomesh_io::network::NetworkNote;
+
+/// Lines for people on what was read and on the cures; with `all` at length.
+pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<String> {
+    let mut lines: Vec<String> = notes.iter().map(ToString::to_string).collect();
+    if report.changed() {
+        lines.extend(report.text(all).lines().map(ToString::to_string));
+    }
+    lines
+}
+
+/// Failure of a run without blocks to speak of. `stopped`: that of a run which was told to stop.
+pub fn failure(error: MeshingError, network: &Path, stopped: impl FnOnce() -> Failure) -> Failure {
+    match error {
+        MeshingError::Skeleton(e) => Failure::input(format!("{}: {e}; correct the file", network.display())),
+        MeshingError::Inlet(e) => Failure::usage(format!("--root: {e}")),
+        MeshingError::Refine(e) => refine_failure(&e),
+        MeshingError::Run(RunError::Cancelled) => stopped(),
+        MeshingError::Run(e @ (RunError::Root(_) | RunError::Plan(_))) => Failure::usage(e.to_string()),
+        MeshingError::Run(e @ (RunError::TooLarge(_) | RunError::Store(_))) => Failure::input(e.to_string()),
+        e @ (MeshingError::Run(_) | MeshingError::Blocks { .. }) => Failure::stage(e.to_string()),
+    }
+}
+
+/// Failure of a refinement.
+pub fn refine_failure(error: &RefineError) -> Failure {
+    match error {
+        RefineError::Skeleton(_) => Failure::input(error.to_string()),
+        RefineError::Cancelled => Failure::stopped(NOTHING_KEPT),
+        _ => Failure::usage(error.to_string()),
+    }
+}

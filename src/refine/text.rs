@@ -1,0 +1,160 @@
+//! Report of a refinement as text for people.
+
+use std::fmt::{self, Write as _};
+
+use super::{Figures, RefineReport, Treatment};
+use anastomesh_mesh::units::grouped;
+
+/// Row of the table of figures: its name and its text for one state.
+type Row = (&'static str, fn(&Figures) -> String);
+
+/// Pairs that are listed.
+const LISTED: usize = 50;
+
+/// A summary and a table of figures for people.
+impl fmt::Display for RefineReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&text(self))
+    }
+}
+
+fn text(report: &RefineReport) -> String {
+    let mut out = String::new();
+    let d = &report.displacement;
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
+        "nodes: {} to {} ({} split, {} bends put in); edges: {} to {}",
+        report.size_before[0],
+        report.size_after[0],
+        report.nodes_split,
+        report.bends,
+        report.size_before[1],
+        report.size_after[1]
+    );
+    let iterations = report.history.last().map_or(0, |s| s.iteration);
+    let best = match report.chosen {
+        Some(iteration) => format!("best after {iteration}"),
+        None => "none as good as the input in what was to be held: nothing was moved".into(),
+    };
+    let _ = writeln!(
+        out,
+        "moved in {iterations} iterations ({best}): mean {:.4}, median {:.4}, 95 % {:.4}, 99 % {:.4}, furthest {:.4} (a \
+         median radius is {:.4})",
+        d.mean,
+        d.median,
+        d.p95,
+        d.p99,
+        d.max,
+        0.448 * report.unit
+    );
+    let _ = writeln!(out, "{:26}{:>12}{:>12}{:>12}{:>12}", "", "given", "split", "moved", "result");
+    for row in report.figures_table() {
+        let [name, values @ ..] = &row[..] else { continue };
+        let _ = write!(out, "{name:26}");
+        for value in values {
+            let _ = write!(out, "{value:>12}");
+        }
+        out.push('\n');
+    }
+    if !report.worse.is_empty() {
+        let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", report.worse_names());
+    }
+    report.write_crowded(LISTED, &mut out);
+    report.write_residual(LISTED, &mut out);
+    out
+}
+
+impl RefineReport {
+    /// Names of the metrics that are worse than in the input, with commas between them.
+    pub fn worse_names(&self) -> String {
+        self.worse.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Table of figures: the name of each, and its values as given, after splitting, after moving, and at the end.
+    pub fn figures_table(&self) -> Vec<Vec<String>> {
+        let states = [&self.given, &self.split, &self.moved, &self.result];
+        let rows: [Row; 13] = [
+            ("overlapping pairs", |f| grouped(f.overlaps)),
+            ("  that share a node", |f| grouped(f.beside)),
+            ("unconnected pairs", |f| grouped(f.unconnected)),
+            ("  far from each other", |f| grouped(f.far)),
+            ("barrier potential", |f| format!("{:.4e}", f.metrics.barrier)),
+            ("shorter than 2 r", |f| percent(f.metrics.shorter_than_2.percent())),
+            ("shorter than 2.5 r", |f| percent(f.metrics.shorter_than_2_5.percent())),
+            ("shorter than 3 r", |f| percent(f.metrics.shorter_than_3.percent())),
+            ("angles under pi/10", |f| percent(f.metrics.narrow.percent())),
+            ("folds under 30 degrees", |f| percent(f.metrics.folds.percent())),
+            ("equation 11 met", |f| percent(f.metrics.long_enough.percent())),
+            ("equation 12 met", |f| percent(f.metrics.open_enough.percent())),
+            ("inner branches cuttable", |f| percent(f.metrics.cuttable.percent())),
+        ];
+        let row = |(name, value): Row| [vec![name.to_owned()], states.map(value).to_vec()].concat();
+        rows.into_iter().map(row).collect()
+    }
+
+    /// Appends the pairs of terminals that are too close to each other, at most `listed` of them one by one.
+    pub fn write_crowded(&self, listed: usize, out: &mut String) {
+        if self.crowded.is_empty() {
+            return;
+        }
+        let _ = writeln!(
+            out,
+            "{} pairs of terminals are too close to each other for two caps",
+            grouped(self.crowded.len())
+        );
+        for pair in self.crowded.iter().take(listed) {
+            let [a, b] = pair.nodes;
+            let done = match (pair.resolved, pair.moved) {
+                (false, _) => "left; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
+                (true, [a, b]) if a + b == 0.0 => "made one".into(),
+                (true, [a, b]) => format!("moved by {a:.4} and {b:.4} (--crowded-terminals keep leaves them)"),
+            };
+            let _ = writeln!(out, "  {a} and {b}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+        }
+        unlisted(self.crowded.len(), listed, out);
+    }
+
+    /// Appends the overlaps that remain, at most `listed` of them one by one.
+    pub fn write_residual(&self, listed: usize, out: &mut String) {
+        let r = &self.residual;
+        if r.pairs.is_empty() {
+            out.push_str("no vessels overlap\n");
+            return;
+        }
+        let lost = if r.volume > 0.0 { 100.0 * r.volume_lost / r.volume } else { 0.0 };
+        let _ = writeln!(
+            out,
+            "{} pairs overlapped when the nodes had come to rest; {} edges were shrunk ({lost:.4} % of the lumen); {} pairs \
+             overlap still",
+            grouped(r.pairs.len()),
+            grouped(r.shrunk_edges),
+            grouped(r.left)
+        );
+        for pair in r.pairs.iter().take(listed) {
+            let [[a, b], [c, d]] = pair.edges;
+            let done = match pair.treatment {
+                Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
+                Treatment::Cleared => "parted by what was done about others".into(),
+                Treatment::Fused => "to be meshed together".into(),
+                Treatment::Left if pair.terminals_too_close => {
+                    "left: their terminals are too close to each other (--crowded-terminals part)".into()
+                }
+                Treatment::Left => "left".into(),
+            };
+            let _ = writeln!(out, "  {a}-{b} and {c}-{d}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+        }
+        unlisted(r.pairs.len(), listed, out);
+    }
+}
+
+fn percent(value: f64) -> String {
+    format!("{value:.3} %")
+}
+
+/// How many pairs are not spelt out.
+fn unlisted(count: usize, listed: usize, out: &mut String) {
+    if count > listed {
+        let _ = writeln!(out, "  and {} more (--json lists all)", grouped(count - listed));
+    }
+}

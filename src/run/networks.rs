@@ -1,0 +1,120 @@
+//! Networks of a run, from the one that was read to the one that is meshed.
+
+use crate::fidelity::Compared;
+use crate::prepare::{PrepareReport, TouchedBy, TouchingTip, take_back};
+use crate::refine::{RefineReport, Refined};
+use anastomesh_io::network::NodeNames;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::{EdgeId, Skeleton};
+use std::sync::Arc;
+
+/// Networks of a run, and what was done to get from one to the next. Those that do not differ are shared.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Networks {
+    /// Network as it was read, cleaned and with usable radii. The mesh is compared with it.
+    pub given: Arc<Skeleton>,
+    /// `given` with as many points as its shape needs.
+    pub outline: Arc<Skeleton>,
+    /// Network after the cures, before refinement.
+    pub prepared: Arc<Skeleton>,
+    /// Network to be meshed: refined and with tips retracted, where that was done.
+    pub network: Arc<Skeleton>,
+    /// Names of the nodes in the file.
+    pub names: NodeNames,
+    /// Report of the cures, and of tips that were retracted since.
+    pub prepare: PrepareReport,
+    /// Report of the refinement; `None` if `network` was not refined.
+    pub refine: Option<RefineReport>,
+    /// Number of tips in `prepare` that the cures treated, before any attempt to mesh.
+    tips_cured: usize,
+}
+
+impl Networks {
+    pub(super) fn new(
+        given: Skeleton,
+        outline: Skeleton,
+        prepared: Skeleton,
+        names: NodeNames,
+        prepare: PrepareReport,
+    ) -> Self {
+        let given = Arc::new(given);
+        let [outline, prepared] = [outline, prepared].map(|network| shared(network, &given));
+        let tips_cured = prepare.touching.len();
+        Self { given, outline, network: Arc::clone(&prepared), prepared, names, prepare, refine: None, tips_cured }
+    }
+
+    /// Networks to compare a mesh with; `meshed` is the network that was meshed, with nodes split.
+    pub fn compared<'a>(&'a self, meshed: &'a Skeleton) -> Compared<'a> {
+        Compared { given: &self.given, outline: &self.outline, meshed }
+    }
+
+    /// Takes a refined network as the one to be meshed; returns the position of each node before it moved.
+    pub(super) fn take_refined(&mut self, refined: Refined) -> Vec<Point3> {
+        let Refined { skeleton, origin, report, .. } = refined;
+        (self.network, self.refine) = (Arc::new(skeleton), Some(report));
+        origin
+    }
+
+    /// Networks of another attempt: the prepared network, as it is or refined.
+    pub(super) fn again(&self, refined: Option<Refined>) -> Self {
+        let mut again = Self { network: Arc::clone(&self.prepared), refine: None, ..self.clone() };
+        again.prepare.touching.truncate(self.tips_cured);
+        if let Some(refined) = refined {
+            again.take_refined(refined);
+        }
+        again
+    }
+
+    /// Retracts terminals, given by their `original`; returns what was done, nothing if no terminal can be retracted.
+    pub(super) fn retract(&mut self, tips: &[u32]) -> Vec<TouchingTip> {
+        if tips.is_empty() {
+            return Vec::new();
+        }
+        // Where no vessel would remain all stay.
+        let Ok((network, told)) = take_back(&self.network, tips) else { return Vec::new() };
+        if told.iter().all(|tip| tip.done == TouchedBy::Left) {
+            return Vec::new();
+        }
+        self.network = Arc::new(network);
+        self.prepare.touching.extend(told.iter().copied());
+        told
+    }
+
+    /// Whether all vessels of the prepared network that overlap leave one branch point.
+    pub(super) fn overlaps_at_forks_alone(&self) -> bool {
+        let network = &self.prepared;
+        let adjacency = network.adjacency();
+        let branches = network.branches(&adjacency);
+        let ends = |edge: EdgeId| branches.list[branches.of_edge[edge.index()].0.index()].ends();
+        let meet_at_fork = |edges: [EdgeId; 2]| ends(edges[0]).iter().any(|end| ends(edges[1]).contains(end));
+        network.overlaps(&adjacency).pairs.iter().all(|overlap| meet_at_fork(overlap.edges))
+    }
+}
+
+/// Shares `other` if the network is equal to it: networks have millions of vessels.
+fn shared(network: Skeleton, other: &Arc<Skeleton>) -> Arc<Skeleton> {
+    if network == **other { Arc::clone(other) } else { Arc::new(network) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_skeleton::fixtures::network;
+
+    #[test]
+    fn another_attempt_begins_without_the_tips_that_were_retracted() {
+        // The tip of the second vessel ends in the wall of the first.
+        let points = [[0.0, 0.0, -20.0], [0.0, 0.0, 20.0], [1.2, 0.0, 0.0], [20.0, 0.0, 0.0]];
+        let given = network(&points, 1.0, &[(0, 1), (2, 3)]);
+        let mut networks =
+            Networks::new(given.clone(), given.clone(), given, NodeNames::default(), PrepareReport::default());
+        assert!(Arc::ptr_eq(&networks.given, &networks.network));
+        assert!(networks.retract(&[]).is_empty() && networks.retract(&[0]).is_empty());
+        let told = networks.retract(&[2]);
+        assert!(told.len() == 1 && told[0].tip == 2, "{told:?}");
+        assert!(networks.network.nodes[2].position.x > 2.0 && networks.prepare.touching == told);
+        let again = networks.again(None);
+        assert!(Arc::ptr_eq(&again.network, &again.prepared) && again.prepare.touching.is_empty());
+    }
+}

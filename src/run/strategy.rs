@@ -1,0 +1,239 @@
+//! Strategies to mesh a network: the network as planned first, then others until a mesh is sound.
+
+use super::error::MeshingError;
+use super::networks::Networks;
+use crate::fidelity::lumen_of;
+use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_shared};
+use crate::prepare::touching_text;
+use crate::refine::{RefineParams, refine};
+use anastomesh_mesh::check::{CheckReport, Line};
+use anastomesh_mesh::progress::Progress;
+use serde::Serialize;
+
+/// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
+const MAX_RETRACTIONS: usize = 4;
+
+/// Relative volume error of a refined network above which it is meshed without refinement, if only vessels of one branch
+/// point overlap: those may be kept apart.
+const MAX_VOLUME_ERROR: f64 = 0.05;
+
+/// Factor on the clearance of the refinement where walls became joined although no vessels overlap. Walls come closer to each
+/// other than tubes do, by the width of the field's kernel.
+const WIDER: f64 = 1.2;
+
+/// Network that an attempt meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Strategy {
+    /// The prepared network, refined if the run asks for it.
+    Planned,
+    /// The network of the attempt before, with terminals retracted that could not be capped.
+    RetractedTips,
+    /// The prepared network, without refinement.
+    Unrefined,
+    /// The prepared network, refined with more clearance.
+    WiderClearance,
+}
+
+impl Strategy {
+    /// Strategies that replace a planned network which gives no sound mesh, in order.
+    const FALLBACKS: [Self; 2] = [Self::Unrefined, Self::WiderClearance];
+}
+
+/// Fault of an attempt.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Fault {
+    /// There is no mesh.
+    NoMesh,
+    /// The mesh is not valid, lacks blocks, or does not keep the vessels.
+    Invalid,
+    /// The volume differs from that of the given lumen, as a share of it.
+    Volume(f64),
+}
+
+/// Attempt to mesh a network.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Attempt {
+    /// Network that was meshed.
+    pub strategy: Strategy,
+    /// Reason to try another strategy; `None` if the mesh is sound.
+    pub fault: Option<Fault>,
+}
+
+/// Mesh of an attempt.
+pub(super) struct Candidate<'a> {
+    pub stored: Stored<'a>,
+    pub networks: Networks,
+    /// Index of the attempt.
+    pub attempt: usize,
+}
+
+/// Attempt without a mesh.
+pub(super) struct Failure {
+    pub error: RunError,
+    pub networks: Box<Networks>,
+}
+
+impl Failure {
+    pub(super) fn into_error(self) -> MeshingError {
+        match self.error {
+            RunError::BlocksFailed(report) => MeshingError::Blocks { report, networks: self.networks },
+            error => error.into(),
+        }
+    }
+}
+
+type Outcome<'a> = Result<Candidate<'a>, Failure>;
+
+/// Where and how a network is meshed, and the attempts so far.
+pub(super) struct Meshing<'a, 'b> {
+    pub store: &'a Store,
+    pub plan: &'b MeshPlan,
+    pub fits: &'b dyn Fn(&Estimate) -> Result<(), TooLarge>,
+    pub progress: &'a dyn Progress,
+    pub retracts: bool,
+    /// Parameters of the refinement, if there is one.
+    pub refine: Option<RefineParams>,
+    pub attempts: Vec<Attempt>,
+}
+
+/// Meshes a network. Refinement must not end in something worse than none: where the planned network gives no sound mesh, or
+/// one of another volume, fallbacks are tried; the planned one is kept if none is better.
+pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Outcome<'a> {
+    let first = meshing.attempt(Strategy::Planned, networks);
+    let (fault, networks) = match &first {
+        Ok(candidate) => (meshing.attempts[candidate.attempt].fault, &candidate.networks),
+        Err(Failure { error, networks }) => {
+            (matches!(error, RunError::BlocksFailed(_)).then_some(Fault::NoMesh), &**networks)
+        }
+    };
+    let Some(fault) = fault.filter(|_| networks.refine.is_some()) else { return first };
+    for strategy in Strategy::FALLBACKS {
+        let Some(again) = meshing.networks_for(strategy, fault, networks) else { continue };
+        match meshing.attempt(strategy, again) {
+            Ok(candidate) if meshing.is_better(&candidate, fault) => {
+                meshing.progress.note(&kept(strategy, fault));
+                return Ok(candidate);
+            }
+            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure),
+            Ok(_) | Err(_) => {}
+        }
+    }
+    first
+}
+
+/// Fault of a mesh but for its volume.
+pub(super) fn fault(check: &CheckReport, report: &RunReport, plan: &MeshPlan) -> Option<Fault> {
+    let is_sound = report.failed.is_empty() && check.is_valid() && report.keeps_vessels(plan.fuse);
+    (!is_sound).then_some(Fault::Invalid)
+}
+
+/// Note on a fallback that is kept.
+fn kept(strategy: Strategy, fault: Fault) -> String {
+    match (strategy, fault) {
+        (Strategy::WiderClearance, _) => {
+            "the network was refined again, with more clearance: walls were joined that are to be apart".into()
+        }
+        (_, fault) => {
+            let gives = if matches!(fault, Fault::Volume(_)) { "a lumen of another size" } else { "no valid mesh" };
+            format!("refined, the network gives {gives}; as it was, it gives a valid mesh: that is kept")
+        }
+    }
+}
+
+/// Relative difference of a mesh's volume from that of the given lumen.
+fn volume_error(stored: &Stored, networks: &Networks) -> f64 {
+    (stored.check.counts.volume / lumen_of(&networks.outline) - 1.0).abs()
+}
+
+impl<'a> Meshing<'a, '_> {
+    /// Network of a fallback; `None` if it does not apply to the fault.
+    fn networks_for(&self, strategy: Strategy, fault: Fault, networks: &Networks) -> Option<Networks> {
+        match (strategy, fault) {
+            (Strategy::Unrefined, Fault::Volume(_)) if !networks.overlaps_at_forks_alone() => None,
+            (Strategy::Unrefined, _) => Some(networks.again(None)),
+            (Strategy::WiderClearance, Fault::NoMesh | Fault::Invalid) => {
+                let params = self.refine.as_ref()?;
+                let params = RefineParams { clearance: WIDER * params.clearance, ..params.clone() };
+                Some(networks.again(Some(refine(&networks.prepared, &params, self.progress).ok()?)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the mesh of a fallback is sound, and nearer to the given volume where that was the fault.
+    fn is_better(&self, candidate: &Candidate, fault: Fault) -> bool {
+        let Candidate { stored, networks, .. } = candidate;
+        self.fault_of(stored).is_none()
+            && match fault {
+                Fault::Volume(before) => volume_error(stored, networks) < before,
+                Fault::NoMesh | Fault::Invalid => true,
+            }
+    }
+
+    fn fault_of(&self, stored: &Stored) -> Option<Fault> {
+        fault(&stored.check, &stored.report, self.plan)
+    }
+
+    /// Meshes a network, and again as long as terminals that could not be capped can be retracted.
+    fn attempt(&mut self, mut strategy: Strategy, mut networks: Networks) -> Outcome<'a> {
+        let mut retractions = 0;
+        loop {
+            let made = mesh_shared(self.store, &networks.network, self.plan, self.fits, self.progress);
+            let told = if retractions < MAX_RETRACTIONS && self.retracts {
+                let tips = self.open_tips(&made, networks.prepare.measured);
+                networks.retract(&tips)
+            } else {
+                Vec::new()
+            };
+            let fault = made.as_ref().map_or(Some(Fault::NoMesh), |stored| self.fault_of(stored));
+            if told.is_empty() {
+                return self.ended(strategy, made, fault, networks);
+            }
+            self.attempts.push(Attempt { strategy, fault });
+            touching_text(&told).lines().for_each(|line| self.progress.note(line));
+            strategy = Strategy::RetractedTips;
+            retractions += 1;
+        }
+    }
+
+    /// Records the last attempt of a strategy.
+    fn ended(
+        &mut self,
+        strategy: Strategy,
+        made: Result<Stored<'a>, RunError>,
+        fault: Option<Fault>,
+        networks: Networks,
+    ) -> Outcome<'a> {
+        let volume = |stored: &Stored| {
+            let error = networks.refine.as_ref().map(|_| volume_error(stored, &networks));
+            error.filter(|&error| error > MAX_VOLUME_ERROR).map(Fault::Volume)
+        };
+        let fault = fault.or_else(|| made.as_ref().ok().and_then(volume));
+        self.attempts.push(Attempt { strategy, fault });
+        match made {
+            Ok(stored) => Ok(Candidate { stored, networks, attempt: self.attempts.len() - 1 }),
+            Err(error) => Err(Failure { error, networks: Box::new(networks) }),
+        }
+    }
+
+    /// Terminals to retract, by their indices in the file: those that could not be capped, but for named inlets. Of a grown
+    /// network only if its mesh lacks nothing else, or there is none.
+    fn open_tips(&self, made: &Result<Stored, RunError>, measured: bool) -> Vec<u32> {
+        let report = match made {
+            Ok(Stored { report, check, .. }) if measured || lacks_but_caps(check) => report,
+            Err(RunError::BlocksFailed(report)) => report,
+            _ => return Vec::new(),
+        };
+        report.uncapped().filter(|node| !self.plan.roots.contains(node)).collect()
+    }
+}
+
+/// Whether a mesh would be valid if each terminal had its cap.
+fn lacks_but_caps(check: &CheckReport) -> bool {
+    check.failed().all(|line| line.line == Line::CapPerTerminal)
+}
