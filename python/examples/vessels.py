@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """From a network in arrays to a mesh and a picture of it, as in a notebook: bars of progress, then the mesh.
 
-    python vessels.py [PICTURE.png]
+python vessels.py [PICTURE.png]
 """
 
 import sys
