@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,7 +16,7 @@ Ints = npt.NDArray[np.integer[Any]]
 #: Input with a number in each row: an array or a list.
 Column = npt.NDArray[Any] | Sequence[float]
 #: Input with a fixed number of columns: an array, a list of lists, a list of arrays.
-Rows = npt.NDArray[Any] | Sequence[Sequence[float]] | Sequence[npt.NDArray[Any]]
+Rows = npt.NDArray[Any] | Sequence[Collection[Any]]
 
 
 _Kind = TypeVar("_Kind", bound=Array)

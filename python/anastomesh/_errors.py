@@ -40,7 +40,7 @@ class InvalidError(Error):
     def __init__(self, message: str, **details: Any) -> None:
         #: Conditions that fail, each with its name, count and places. Empty if only the message tells the reason.
         self.failed: list[Condition] = failed_conditions(details.get("report"))
-        super().__init__("\n".join([*map(str, self.failed), message]), **details)
+        super().__init__("\n".join([*map(str, self.failed), message]).rstrip() or "the result is not valid", **details)
 
 
 class UsageError(Error, ValueError):
@@ -80,4 +80,7 @@ def error_of(code: int, message: str, **details: Any) -> Error:
     """The exception for an exit code; negative codes are signals."""
     if code < 0 and code not in _BY_CODE:
         return StoppedError(message or f"the program was ended by signal {-code}", exit_code=code, **details)
-    return _BY_CODE.get(code, BugError)(message or f"the program ended with {code}", exit_code=code, **details)
+    kind = _BY_CODE.get(code, BugError)
+    if kind is not InvalidError:
+        message = message or f"the program ended with exit code {code}"
+    return kind(message, exit_code=code, **details)

@@ -32,6 +32,11 @@ def save(thing: Writable, path: StrPath, options: Mapping[str, object]) -> None:
         convert_file(thing._write(folder), path, options, folder)
 
 
+def is_folder_of_arrays(path: StrPath) -> bool:
+    """True for a folder .npyd, which needs no conversion."""
+    return os.path.isdir(path) and os.fspath(path).endswith(".npyd")
+
+
 def load(path: StrPath, name: str, read: Callable[[str], _Read]) -> _Read:
     """Reads a file of any format: ``read`` gets it converted to the format of the file ``name``."""
     with work_folder() as folder:

@@ -120,7 +120,7 @@ class Mesh:
     @classmethod
     def load(cls, path: StrPath) -> Mesh:
         """Reads a mesh in any format that the program reads."""
-        if os.path.isdir(path) and os.fspath(path).endswith(".npyd"):
+        if _files.is_folder_of_arrays(path):
             return cls._read(os.fspath(path))
         return _files.load(path, "mesh.npyd", cls._read)
 

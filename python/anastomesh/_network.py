@@ -124,6 +124,8 @@ class Network:
     @classmethod
     def load(cls, path: StrPath) -> Network:
         """Reads a network in any format that the program reads."""
+        if _files.is_folder_of_arrays(path):
+            return cls._read(os.fspath(path))
         return _files.load(path, "network.npyd", cls._read)
 
     def _write(self, folder: str) -> str:
