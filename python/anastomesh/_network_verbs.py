@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
 from ._arrays import Column, Rows
+from ._foreign import has_lines
 from ._mesh import Mesh
 from ._network import Network, NetworkLike, write_network
 from ._progress import ProgressLike
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 _MESH = Verb("mesh", MeshOptions)
+_ESTIMATE = Verb("mesh", MeshOptions, mode="--dry-run")
+_SHARD = Verb("mesh", MeshOptions)
 _SURFACE = Verb("surface", SurfaceOptions)
 _PREPARE = Verb("prepare", PrepareOptions)
 _REFINE = Verb("refine", RefineOptions)
@@ -48,11 +51,11 @@ def mesh(
     with work_folder() as folder:
         given = _given(network, edges, radii)
         out = os.path.join(folder, "mesh.npyd")
-        done = _run_mesh(given, options, [f"--output={out}"], progress, folder)
+        done = _run_mesh(_MESH, given, options, [f"--output={out}"], progress, folder)
         return done.made(Mesh._read(out, done.report) if os.path.isdir(out) else None)
 
 
-@_MESH.documents
+@_ESTIMATE.documents
 def estimate(
     network: NetworkLike | Rows,
     edges: Rows | None = None,
@@ -67,11 +70,11 @@ def estimate(
     """
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
-        done = _run_mesh(_given(network, edges, radii), options, [f"--output={out}", "--dry-run"], progress, folder)
+        done = _run_mesh(_ESTIMATE, _given(network, edges, radii), options, [f"--output={out}"], progress, folder)
         return done.ensure_success().report or {}
 
 
-@_MESH.documents
+@_SHARD.documents
 def mesh_shard(
     network: NetworkLike | Rows,
     edges: Rows | None = None,
@@ -88,7 +91,7 @@ def mesh_shard(
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
         words = [f"--output={out}", f"--shard={shard[0]}/{shard[1]}"]
-        _run_mesh(_given(network, edges, radii), options, words, progress, folder).ensure_success()
+        _run_mesh(_SHARD, _given(network, edges, radii), options, words, progress, folder).ensure_success()
 
 
 @_SURFACE.documents
@@ -193,26 +196,31 @@ def _given(network: NetworkLike | Rows, edges: Rows | None, radii: Column | None
     return network, edges, radii
 
 
-def _run_mesh(network: NetworkLike, options: Mapping[str, object], words: list[str], progress: ProgressLike, folder: str) -> Done:
+def _run_mesh(
+    verb: Verb, network: NetworkLike, options: Mapping[str, object], words: list[str], progress: ProgressLike, folder: str
+) -> Done:
+    """Runs the verb ``mesh`` with roots as the program calls them."""
+    network = _with_labels(network)
     options = dict(options)
-    is_file = isinstance(network, (str, os.PathLike))
-    roots = options.get("roots")
-    if isinstance(roots, str) or roots is not None and not hasattr(roots, "__iter__"):
-        raise TypeError(f"roots={roots!r}: give a sequence of nodes")
-    if not is_file and not hasattr(network, "n_lines"):
-        network = Network.of(network)
-        if roots is not None:
-            options["roots"] = [str(network.node(root)) for root in cast(list[Any], roots)]
-    elif roots is not None:
-        options["roots"] = [str(root) for root in cast(list[Any], roots)]
-    return _MESH.run([write_network(folder, network), *words], options, progress, folder=folder)
+    roots: Any = options.get("roots")
+    if roots is not None:
+        if isinstance(roots, str) or not hasattr(roots, "__iter__"):
+            raise TypeError(f"roots={roots!r}: give a sequence of nodes")
+        options["roots"] = [str(network.node(root) if isinstance(network, Network) else root) for root in roots]
+    return verb.run([write_network(folder, network), *words], options, progress, folder=folder)
 
 
 def _to_network(verb: Verb, network: NetworkLike, options: Mapping[str, object], progress: ProgressLike) -> Network:
     """Runs a verb that makes a network from a network; labels of a graph are kept."""
     with work_folder() as folder:
-        given = None if isinstance(network, (str, os.PathLike)) or hasattr(network, "n_lines") else Network.of(network)
-        out = os.path.join(folder, f"{verb.name}.npyd")
-        path = write_network(folder, network if given is None else given)
+        network = _with_labels(network)
+        given = network if isinstance(network, Network) else None
+        out = os.path.join(folder, "result.npyd")
+        path = write_network(folder, network)
         done = verb.run([path, f"--output={out}"], options, progress, folder=folder)
         return done.made(Network._read(out, done.report, given) if os.path.isdir(out) else None)
+
+
+def _with_labels(network: NetworkLike) -> NetworkLike:
+    """The path of a file or lines of pyvista as they are; anything else as a :class:`Network`, which knows its labels."""
+    return network if isinstance(network, (str, os.PathLike)) or has_lines(network) else Network.of(network)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _TETRAHEDRALIZE = Verb("tetrahedralize", TetrahedralizeOptions)
 
+_CHECK_SURFACE = Verb("tetrahedralize", CheckSurfaceOptions, mode="--check-only")
+
 #: A point in a region, its number, and optionally the maximum volume of its tetrahedra.
 Region = tuple[Column, int] | tuple[Column, int, float]
 
@@ -54,11 +56,11 @@ def tetrahedralize(
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
         given = _Complex(points, triangles, markers, segments, holes, regions)
-        done = given.run([f"--output={out}"], options, progress, folder)
+        done = given.run(_TETRAHEDRALIZE, out, options, progress, folder)
         return done.made(Mesh._read(out, done.report) if os.path.isdir(out) else None)
 
 
-@Verb("tetrahedralize", CheckSurfaceOptions).documents
+@_CHECK_SURFACE.documents
 def check_surface(
     points: SurfaceLike | StrPath | Rows,
     triangles: Rows | None = None,
@@ -77,7 +79,7 @@ def check_surface(
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
         given = _Complex(points, triangles, markers, segments, holes, regions)
-        return given.run([f"--output={out}", "--check-only"], options, progress, folder).ensure_success().report or {}
+        return given.run(_CHECK_SURFACE, out, options, progress, folder).ensure_success().report or {}
 
 
 class _Complex:
@@ -109,8 +111,8 @@ class _Complex:
         else:
             self._points = points
 
-    def run(self, words: list[str], options: Mapping[str, object], progress: ProgressLike, folder: str) -> Done:
-        return _TETRAHEDRALIZE.run([self._path or self._write(folder), *words], options, progress, folder=folder)
+    def run(self, verb: Verb, out: str, options: Mapping[str, object], progress: ProgressLike, folder: str) -> Done:
+        return verb.run([self._path or self._write(folder), f"--output={out}"], options, progress, folder=folder)
 
     def _write(self, folder: str) -> str:
         points = _arrays.floats("points", self._points, 3)

@@ -218,4 +218,5 @@ def _faces(cells: Array, corners: int) -> Ints:
     from itertools import combinations
 
     chosen = [list(some) for some in combinations(range(cells.shape[1]), corners)]
-    return np.unique(np.sort(np.concatenate([cells[:, some] for some in chosen]), axis=1), axis=0)
+    faces: Ints = np.unique(np.sort(np.concatenate([cells[:, some] for some in chosen]), axis=1), axis=0)
+    return faces

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
@@ -20,19 +21,21 @@ _ELSEWHERE = {"json": "the report", "verbose": "the report"}
 class Verb:
     """A verb of the program with the keyword arguments of its Python functions.
 
-    ``json`` and ``progress`` tell whether it has the options ``--json`` and ``--progress``.
+    ``json`` and ``progress`` tell whether it has the options ``--json`` and ``--progress``; ``mode`` is one more option.
     """
 
-    def __init__(self, name: str, options: type, *, json: bool = True, progress: bool = True) -> None:
-        self.name = name
+    def __init__(self, name: str, options: type, *, mode: str = "", json: bool = True, progress: bool = True) -> None:
         self.keywords = keywords(options)
-        self._fixed = [*(["--json"] if json else []), *(["--progress=json"] if progress else [])]
+        self._name = name
+        self._function = name
+        fixed = [(mode, bool(mode)), ("--json", json), ("--progress=json", progress)]
+        self._fixed = [option for option, given in fixed if given]
 
     def run(
         self, given: Sequence[str], options: Mapping[str, object], progress: ProgressLike = None, *, folder: str = ""
     ) -> Done:
         """Runs the verb to its end; messages do not name ``folder``, that of the arrays."""
-        command = [self.name, *given, *words(self.name, self.keywords, options), *self._fixed]
+        command = [self._name, *given, *words(self._function, self.keywords, options), *self._fixed]
         return run(command, progress).saying(lambda line: self.in_python(line, folder))
 
     def in_python(self, line: str, folder: str = "") -> str | None:
@@ -45,12 +48,13 @@ class Verb:
         line = re.sub(
             r"--([a-z][a-z0-9-]*)(?: <[^>]*>)?",
             lambda found: spelled.get(found[1], found[1].replace("-", "_") + "="),
-            line.replace(folder + "/", "") if folder else line,
+            line.replace(folder + os.sep, "") if folder else line,
         )
         return re.sub(r"`anastomesh ([a-z]+)`", r"`anastomesh.\1()`", line)
 
     def documents(self, function: _Function) -> _Function:
         """Completes the docstring and the signature of a function with the keyword arguments."""
+        self._function = function.__name__
         own = inspect.signature(function).parameters.values()
         named = [parameter for parameter in own if parameter.kind is not parameter.VAR_KEYWORD]
         listed = [

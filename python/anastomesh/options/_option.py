@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterator, Mapping
-from typing import Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
+from collections.abc import Iterator, Mapping, Sequence
+from types import UnionType
+from typing import Any, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class Keyword(NamedTuple):
     @property
     def takes_bool(self) -> bool:
         """True if the keyword accepts True and False."""
-        return self.hint is bool or bool in get_args(self.hint)
+        return bool in _parts(self.hint)
 
     def spellings(self) -> dict[str, str]:
         """Names on the command line with what a caller writes in Python instead."""
@@ -70,7 +71,8 @@ class Keyword(NamedTuple):
 
     def items(self, value: Any) -> list[Any]:
         """Items of a sequence, where the type allows one."""
-        if "Sequence" not in str(self.hint) and "tuple" not in str(self.hint) or not hasattr(value, "__iter__"):
+        takes_items = any(get_origin(part) in (Sequence, tuple) for part in _parts(self.hint))
+        if not takes_items or not hasattr(value, "__iter__"):
             raise TypeError(f"{self.name}={value!r}: give {self.kind()}")
         return list(value)
 
@@ -85,14 +87,15 @@ class Keyword(NamedTuple):
 
 
 def _parts(hint: Any) -> list[Any]:
-    is_union = get_origin(hint) is not None and type(None) in get_args(hint) or str(hint).count(" | ")
+    """Alternatives of a type, without None."""
+    is_union = get_origin(hint) in (Union, UnionType)
     return [part for part in get_args(hint) if part is not type(None)] if is_union else [hint]
 
 
 def _shown(hint: Any) -> str:
     if get_origin(hint) is Literal:
         return "{" + ", ".join(map(repr, get_args(hint))) + "}"
-    if hint is os.PathLike or get_origin(hint) is os.PathLike:
+    if get_origin(hint) is os.PathLike:
         return "os.PathLike"
     if get_origin(hint) is None and hasattr(hint, "__name__"):
         return str(hint.__name__)
