@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sysconfig
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -40,4 +41,4 @@ def installed_version() -> str:
         return version("anastomesh")
     except PackageNotFoundError:
         # A source tree on the path, without an installation.
-        return "0+source"
+        return subprocess.check_output([binary(), "--version"], text=True).split()[1]

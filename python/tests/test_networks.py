@@ -80,6 +80,9 @@ def test_overlaps_are_an_error_with_the_mesh_and_refine_parts_them() -> None:
     assert "refine= moves them apart" in str(caught.value)
     assert "--" not in str(caught.value)
     assert not anastomesh.check(caught.value.result).valid
+    with pytest.raises(anastomesh.InvalidError, match="vessels_overlap fails at 1 place") as caught:
+        anastomesh.refine(network, iterations=0)
+    assert caught.value.failed[0].places[0].ids == (0, 1, 2, 3) and len(caught.value.result.nodes) == 4
     better = anastomesh.refine(network)
     assert better.displacement is not None and better.original_node is not None
     assert better.displacement.any() and len(better.original_node) == len(better.nodes)

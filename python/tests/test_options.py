@@ -7,11 +7,14 @@ import re
 import subprocess
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import anastomesh
+import networkx as nx
 import pytest
 from anastomesh import options
+from anastomesh._verb import Verb
 from anastomesh.options._option import Keyword, keywords
 from anastomesh.options.files import CapOptions, FileOptions
 
@@ -111,6 +114,25 @@ def test_words_of_the_command_line() -> None:
     assert filling["refine"].words(False) == ["--no-refine"] and filling["refine"].words(True) == []
     check = keywords(options.ViewOptions)["check"]
     assert check.words(True) == ["--check"] and check.words(False) == ["--no-check"] and check.words(None) == []
+
+
+def test_messages_name_keywords_and_functions() -> None:
+    said = Verb("mesh", options.MeshOptions).in_python
+    assert said("give a name with `--radius-array`, or --rho <RHO>") == "give a name with `radius_array=`, or rho="
+    assert said("--keep-going leaves blocks out") == "keep_going=True leaves blocks out"
+    assert said("--root names another; --json lists all") == "roots= names another; the report lists all"
+    assert said("`anastomesh refine` moves them apart, at -1 --") == "`anastomesh.refine()` moves them apart, at -1 --"
+    assert said("For more information, try '--help'.") is None
+    filling = Verb("tetrahedralize", options.TetrahedralizeOptions)
+    assert filling.in_python("--no-refine adds no points") == "refine=False adds no points"
+
+
+def test_options_from_a_file(fork: nx.Graph, tmp_path: Path) -> None:
+    plan = tmp_path / "plan.toml"
+    plan.write_text("rho = 4.0\nkeep-spurs = true\n")
+    by_file = anastomesh.mesh(fork, config=plan)
+    assert len(by_file.tets) == len(anastomesh.mesh(fork, rho=4).tets)
+    assert len(anastomesh.mesh(fork, config=plan, rho=3).tets) < len(by_file.tets)
 
 
 def test_hints_are_real_types() -> None:
