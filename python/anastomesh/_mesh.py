@@ -31,11 +31,11 @@ class Patch:
     id: int
     name: str
     #: Terminal node of the given network that the cap closes.
-    node: int | None = None
-    center: tuple[float, float, float] | None = None
+    node: int | None = field(default=None, repr=False)
+    center: tuple[float, float, float] | None = field(default=None, repr=False)
     #: Outward unit normal of the cap.
-    normal: tuple[float, float, float] | None = None
-    radius: float | None = None
+    normal: tuple[float, float, float] | None = field(default=None, repr=False)
+    radius: float | None = field(default=None, repr=False)
 
 
 @dataclass(eq=False, repr=False)

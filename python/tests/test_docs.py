@@ -19,6 +19,11 @@ def test_documentation(tmp_path: Path) -> None:
     assert len(blocks()) > 5
     done = subprocess.run([sys.executable, "-c", "\n".join(blocks())], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    printed = re.findall(r"^ *print\(.*\) +# (.*)$", "\n".join(blocks()), re.M)
+    assert len(printed) > 3
+    for line in printed:
+        pattern = re.escape(line).replace(re.escape("..."), ".*")
+        assert re.search(f"^{pattern}$", done.stdout, re.M), line
     assert {"vessels.vtu", "vessels.png", "vessels.html"} <= {path.name for path in tmp_path.iterdir()}
 
 

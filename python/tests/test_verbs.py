@@ -201,6 +201,7 @@ def test_results_are_short_to_print(fork: nx.Graph) -> None:
     mesh = anastomesh.mesh(fork)
     assert repr(mesh).startswith(f"Mesh({len(mesh.points):,} points, {len(mesh.tets):,} tetrahedra, ")
     assert repr(Mesh(mesh.points, mesh.tets)).endswith("0 triangles, 0 patches)")
+    assert repr(mesh.patches[1]) == "Patch(id=2, name='inlet')"
 
 
 def test_version() -> None:
