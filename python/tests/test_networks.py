@@ -1,4 +1,4 @@
-"""Networks to meshes, and to better networks."""
+"""Meshes of networks, and refined networks."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_overlaps_are_an_error_with_the_mesh_and_refine_parts_them() -> None:
     assert crossing.places[0].position is not None
     assert np.linalg.norm(np.subtract(crossing.places[0].position, (10, 0, 0.25))) < 2
     assert str(caught.value).startswith(f"no_self_intersection fails at {crossing.count} places, the first at (")
-    assert "refine= moves them apart" in str(caught.value)
+    assert "refine=" in str(caught.value)
     assert "--" not in str(caught.value)
     assert not anastomesh.check(caught.value.result).valid
     with pytest.raises(anastomesh.InvalidError, match="vessels_overlap fails at 1 place") as caught:

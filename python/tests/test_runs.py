@@ -1,4 +1,4 @@
-"""Progress, and runs that are ended."""
+"""Progress, and runs that are stopped."""
 
 from __future__ import annotations
 

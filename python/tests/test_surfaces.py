@@ -1,4 +1,4 @@
-"""Surfaces, complexes and points to tetrahedra."""
+"""Tetrahedralization of surfaces, complexes and points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The class that users of PyPI's tetgen know."""
+"""Drop-in replacement for TetGen of PyPI's tetgen."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_what_is_not_there_is_refused(cube: Cube) -> None:
         tet.tetrahedralize(mindiheral=3)  # type: ignore[call-arg]
     with pytest.raises(anastomesh.UsageError, match="R"):
         tet.tetrahedralize(switches="pR")
-    # What only says how is passed over, as is the usual value of what is not there.
+    # Keywords that tune TetGen are ignored, and so are defaults of refused ones.
     tet.tetrahedralize(nobisect=True, verbose=1, brio_ratio=0.5, coarsen=False, refine=False, bgmesh=None, steinerleft=-1)
     assert tet.is_tetrahedralized
     with pytest.raises(RuntimeError, match="all triangular"):
