@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """The Python package beside PyPI's `tetgen` and beside the bare program, as tables in Markdown.
 
-    python benches/python.py plain SURFACE.off...      the same call of tetgen.TetGen and of anastomesh.TetGen: no points
-                                                       but those that the surface needs
-    python benches/python.py quality SURFACE.off...    the same with a bound on the shape
-    python benches/python.py overhead SURFACE.off... NETWORK...    the same run from Python and by the program alone
+    python benches/python.py plain SURFACE.off...      tetgen.TetGen and anastomesh.TetGen, no quality points
+    python benches/python.py quality SURFACE.off...    the same with a bound on the ratio
+    python benches/python.py split SURFACE.off...      the same with bounds on ratio and angle; the boundary may be split
+    python benches/python.py overhead SURFACE.off... NETWORK...    a run from Python beside the bare program
 
-Needs both packages (`pip install tetgen anastomesh pyvista meshio`); `ANASTOMESH_BINARY` names another program. Times are the
-least of some runs, the ratio is that of CPU times (`overhead`: medians of pairs in turns). A surface is kept when each of its triangles is a face of a tetrahedron. Each call of tetgen's runs
-in a process of its own, as some end the process.
+`sphere` is the surface `pyvista.Sphere()`. Needs both packages (`pip install tetgen anastomesh pyvista meshio`);
+`ANASTOMESH_BINARY` is the path of another program. Times are the minimum of three runs, and the ratio is that of CPU times;
+`overhead` gives medians of pairs. A surface is kept if each of its triangles is a face of a tetrahedron. Each call of tetgen
+runs in its own process, because some calls end the process.
 """
 
 import argparse
@@ -27,10 +28,15 @@ import numpy as np
 CALLS = {
     "plain": {"nobisect": True, "quality": False},
     "quality": {"nobisect": True, "minratio": 1.4},
+    "split": {"mindihedral": 10, "minratio": 1.5},
 }
 
 
 def surface_of(path):
+    if path == "sphere":
+        import pyvista
+
+        return pyvista.Sphere().points.astype(np.float64), pyvista.Sphere().regular_faces.astype(np.int32)
     import meshio
 
     mesh = meshio.read(path)
@@ -38,7 +44,7 @@ def surface_of(path):
 
 
 def now():
-    """Wall and CPU time, in seconds; of children that have ended, too."""
+    """Wall and CPU time in seconds, including children that have ended."""
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return np.array([time.perf_counter(), sum(u.ru_utime + u.ru_stime for u in used)])
 
@@ -50,7 +56,7 @@ def taken(run):
 
 
 def kept(triangles, tets):
-    """How many of the triangles are faces of tetrahedra."""
+    """Number of triangles that are faces of tetrahedra."""
     faces = np.sort(np.concatenate([tets[:, [i for i in range(4) if i != k]] for k in range(4)]), axis=1)
 
     def key(rows):
@@ -74,7 +80,7 @@ def smallest_angle(points, tets):
 
 
 def one(call, package, path):
-    """What one package makes of a surface, as JSON."""
+    """Prints the result of one package for a surface, as JSON."""
     if package == "tetgen":
         from tetgen import TetGen
     else:
@@ -107,7 +113,7 @@ def replace(call, paths):
 
 
 def in_process(call, package, path):
-    """What one package reports of a surface; nothing where its process ends without a report."""
+    """Result of one package for a surface, or None if its process ends without one."""
     command = [sys.executable, __file__, "one", call, package, path]
     done = subprocess.run(command, capture_output=True, text=True, timeout=900)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
@@ -142,7 +148,7 @@ def overhead(paths):
     for path in paths:
         pairs = seconds_both(path)
         (bare, bare_cpu), (python, python_cpu) = np.median(pairs, axis=0)
-        # Of each pair: other work on the machine comes and goes.
+        # Differences of pairs: the load of the machine changes.
         more, more_cpu = np.median(pairs[:, 1] - pairs[:, 0], axis=0)
         shares = f"{1e3 * more:.0f} ms ({more / bare:.1%}), {1e3 * more_cpu:.0f} ms ({more_cpu / bare_cpu:.1%})"
         print(f"| {pathlib.Path(path).name} | {bare:.3f}, {bare_cpu:.3f} | {python:.3f}, {python_cpu:.3f} | {shares} |", flush=True)

@@ -7,82 +7,93 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _files
 from ._arrays import Array, Floats, Ints
-from ._run import arguments, run, work_folder
+from .options import ConvertOptions, StrPath
 
-#: What values beside a mesh are called in the folder, by where they are.
+if TYPE_CHECKING:
+    import pyvista
+    from typing_extensions import Unpack
+
+#: Prefixes of files with values at points, tetrahedra and triangles.
 _VALUES = {"point": "point_", "tet": "tet_", "triangle": "triangle_"}
 _PARTS = ("points", "tets", "tet_blocks", "triangles", "triangle_patches", "triangle_blocks")
 
 
 @dataclass(frozen=True)
 class Patch:
-    """A part of the boundary: the wall, an inlet or outlet with its disc, or what has one marker."""
+    """Part of the boundary: the wall, an inlet or outlet with its cap, or the triangles of one marker."""
 
     id: int
     name: str
-    #: The terminal node that the disc closes, in the order of the network that was given.
-    node: int | None = None
-    center: tuple[float, float, float] | None = None
-    #: Out of the mesh, of length 1.
-    normal: tuple[float, float, float] | None = None
-    radius: float | None = None
+    #: Terminal node of the given network that the cap closes.
+    node: int | None = field(default=None, repr=False)
+    center: tuple[float, float, float] | None = field(default=None, repr=False)
+    #: Outward unit normal of the cap.
+    normal: tuple[float, float, float] | None = field(default=None, repr=False)
+    radius: float | None = field(default=None, repr=False)
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Mesh:
     """A mesh: tetrahedron ``i`` has the corners ``points[tets[i]]`` and a positive volume.
 
-    ``triangles`` (k, 3) are its boundary, seen from outside counter-clockwise, with ``markers`` (k,), the patch of each; of a
-    surface that was filled they are its triangles in their order. ``regions`` (m,) are the regions of the tetrahedra, or the
-    blocks that the mesh of a network is made of. ``report`` is what the program says of the run, ``terminals`` what it knows of
-    each inlet and outlet (place, area, flow, pressure, ...), ``values`` what ``data=`` asked for, as
-    ``{("point", "radius"): array}``.
+    A surface that was filled keeps the order of its points and triangles; points that were added follow.
     """
 
     points: Floats
     tets: Ints
+    #: Triangles of the boundary (k, 3), counter-clockwise from outside.
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int32))
+    #: Patch of each triangle (k,), or None.
     markers: Ints | None = None
+    #: Region of each tetrahedron (m,); in the mesh of a network its block.
     regions: Ints | None = None
     patches: list[Patch] = field(default_factory=list)
-    terminals: list[dict[str, Any]] = field(default_factory=list, repr=False)
-    values: dict[tuple[str, str], Array] = field(default_factory=dict, repr=False)
-    report: dict[str, Any] | None = field(default=None, repr=False)
-    _blocks: Ints | None = field(default=None, repr=False)
-    _notes: dict[str, Any] = field(default_factory=dict, repr=False)
+    #: Table of inlets and outlets: place, area, flow, pressure and so on of each.
+    terminals: list[dict[str, Any]] = field(default_factory=list)
+    #: Values that ``data=`` asked for, as ``{("point", "radius"): array}``.
+    values: dict[tuple[str, str], Array] = field(default_factory=dict)
+    #: The program's report of the run; empty without one.
+    report: dict[str, Any] = field(default_factory=dict)
+    _blocks: Ints | None = None
+    _notes: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        cells = f"{len(self.tets):,} tetrahedra, {len(self.triangles):,} triangles"
+        return f"Mesh({len(self.points):,} points, {cells}, {len(self.patches):,} patches)"
 
     def patch(self, name: str) -> Ints:
-        """The triangles of the patch of a name."""
+        """Triangles of the patch with a name."""
         ids = [patch.id for patch in self.patches if patch.name == name]
         if not ids or self.markers is None:
-            raise KeyError(f"there is no patch {name!r}; there are {', '.join(p.name for p in self.patches)}")
+            raise KeyError(f"there is no patch {name!r}: choose from {', '.join(p.name for p in self.patches)}")
         chosen: Ints = self.triangles[self.markers == ids[0]]
         return chosen
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """The tetrahedra as a ``pyvista.UnstructuredGrid``, with the cell array ``block`` and ``values``."""
         import pyvista
 
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets}, self.points)
-        return self._with_data(grid, {name: of_tets for name, (of_tets, _) in self._cell_data().items() if name != "patch"})
+        self._add_data(grid, {name: of_tets for name, (of_tets, _) in self._cell_data().items() if name != "patch"})
+        return grid
 
-    def boundary_to_pyvista(self) -> Any:
-        """The boundary as a ``pyvista.PolyData`` on all points, with the cell arrays ``patch`` and ``block`` and ``values``."""
+    def boundary_to_pyvista(self) -> pyvista.PolyData:
+        """The boundary as a ``pyvista.PolyData`` with all points, the cell arrays ``patch`` and ``block``, and ``values``."""
         import pyvista
 
-        surface = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
-        return self._with_data(surface, {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()})
+        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
+        self._add_data(surface, {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()})
+        return surface
 
-    def _with_data(self, data_set: Any, of_cells: dict[str, Array]) -> Any:
+    def _add_data(self, data_set: pyvista.DataSet, of_cells: dict[str, Array]) -> None:
         data_set.cell_data.update(of_cells)
         data_set.point_data.update(self._values("point"))
-        return data_set
 
     def to_meshio(self) -> Any:
         """A ``meshio.Mesh``: cells ``tetra`` and ``triangle``, cell data ``patch`` and ``block``, the names of patches in
@@ -101,28 +112,20 @@ class Mesh:
             field_data={patch.name: np.array([patch.id, 2]) for patch in self.patches},
         )
 
-    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Writes it in any format of ``anastomesh convert``: .vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele, .npyd, or the
-        boundary as .stl, .ply, .obj, .off, .glb, .3mf, .vtp."""
-        with work_folder() as folder:
-            done = run("convert", [self._write(folder), f"--output={os.fspath(path)}", *arguments(options)], folder=folder)
-            if done.code:
-                raise done.error()
+    def save(self, path: StrPath, **options: Unpack[ConvertOptions]) -> None:
+        """Writes the mesh (.vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele, .npyd) or its boundary (.stl, .ply, .obj, .off,
+        .glb, .3mf, .vtp); the keyword arguments are those of ``convert``."""
+        _files.save(self, path, options)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Mesh:
+    def load(cls, path: StrPath) -> Mesh:
         """Reads a mesh in any format that the program reads."""
-        if os.path.isdir(path) and os.fspath(path).endswith(".npyd"):
-            return cls._read(os.fspath(path), None)
-        with work_folder() as folder:
-            out = os.path.join(folder, "mesh.npyd")
-            done = run("convert", [os.fspath(path), f"--output={out}"], folder=folder)
-            if done.code:
-                raise done.error()
-            return cls._read(out, None)
+        if _files.is_folder_of_arrays(path):
+            return cls._read(os.fspath(path))
+        return _files.load(path, "mesh.npyd", cls._read)
 
     def _cell_data(self) -> dict[str, tuple[Array, Array]]:
-        """Of tetrahedra and of triangles."""
+        """Values of tetrahedra and of triangles, by name."""
         markers = self.markers if self.markers is not None else np.zeros(len(self.triangles), np.int32)
         regions = self.regions if self.regions is not None else np.zeros(len(self.tets), np.int32)
         blocks = self._blocks if self._blocks is not None else np.zeros(len(self.triangles), np.int32)
@@ -134,8 +137,8 @@ class Mesh:
         return {name: values for (where, name), values in self.values.items() if where == at}
 
     def _write(self, folder: str) -> str:
-        """Writes it for the program; returns the path."""
-        path = os.path.join(folder, "given.npyd")
+        """Writes it for the program and returns the path."""
+        path = os.path.join(folder, "mesh.npyd")
         os.mkdir(path)
         points = _arrays.floats("points", self.points, 3)
         tets = _arrays.indices("tets", self.tets, 4, "points", len(points))
@@ -146,7 +149,7 @@ class Mesh:
             points=points,
             tets=tets,
             tet_blocks=None if self.regions is None else _arrays.labels("regions", self.regions, of_tets),
-            # Without any the boundary is not labelled.
+            # A mesh without triangles has no labelled boundary.
             triangles=triangles if len(triangles) else None,
             triangle_patches=None
             if self.markers is None or not len(triangles)
@@ -159,7 +162,7 @@ class Mesh:
         return path
 
     @classmethod
-    def _read(cls, folder: str, report: dict[str, Any] | None) -> Mesh:
+    def _read(cls, folder: str, report: dict[str, Any] | None = None) -> Mesh:
         """Reads what the program has written."""
         files = [name for name, kind in map(os.path.splitext, sorted(os.listdir(folder))) if kind == ".npy"]
         parts = {name: _arrays.read(folder, name) for name in _PARTS if name in files}
@@ -182,7 +185,7 @@ class Mesh:
             patches=[_patch(patch) for patch in notes.get("patches", [])],
             terminals=_terminals(folder),
             values=values,
-            report=report,
+            report=report or {},
             _blocks=parts.get("triangle_blocks"),
             _notes=notes,
         )
@@ -196,7 +199,7 @@ def _patch(said: Mapping[str, Any]) -> Patch:
 
 
 def _terminals(folder: str) -> list[dict[str, Any]]:
-    """The table of inlets and outlets that the program writes beside the mesh of a network."""
+    """Table of inlets and outlets, which the program writes beside the mesh of a network."""
     path = folder.removesuffix(".npyd") + "_patches.csv"
     if not os.path.exists(path):
         return []

@@ -1,75 +1,89 @@
-"""Networks of vessels: nodes with radii, and edges."""
+"""Vascular networks: nodes with radii, and edges."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _arrays
-from ._arrays import Array, Floats, Ints
+from . import _arrays, _files
+from ._arrays import Array, Column, Floats, Ints, Rows
+from ._foreign import ForeignNetwork, GraphLike, has_lines, is_graph
+from .options import ConvertOptions, StrPath
+
+if TYPE_CHECKING:
+    import networkx
+    from typing_extensions import Unpack
 
 _POSITIONS = ("pos", "position", "coords", "xyz")
 _RADII = ("radius", "r", "radii")
 
 
-@dataclass(eq=False)
 class Network:
-    """A network: node ``i`` lies at ``nodes[i]``, edge ``j`` joins the two nodes ``edges[j]``.
+    """A network: node ``i`` is at ``nodes[i]``, edge ``j`` joins the two nodes ``edges[j]``.
 
-    ``radii`` (n,) are those of the nodes, ``edge_radii`` (m,) those of the edges, or (m, 2) at both of their ends; one of them
-    is needed. ``roots`` name the nodes at which its trees begin. Lengths are in any one unit. A network that ``refine`` has made
-    also has ``original_node`` (n,), ``displacement`` (n, 3) and ``report``.
+    ``radii`` (n,) belong to nodes, ``edge_radii`` (m,) to edges, or (m, 2) to both ends of each edge; one of them is needed.
+    ``roots`` are the nodes of inlets. All lengths have the same unit.
     """
 
-    nodes: Floats
-    edges: Ints
-    radii: Floats | None = None
-    edge_radii: Floats | None = None
-    roots: Ints | None = None
-    #: What the nodes are called, where they come from a graph.
-    labels: list[Any] | None = field(default=None, repr=False)
-    original_node: Ints | None = field(default=None, repr=False)
-    displacement: Floats | None = field(default=None, repr=False)
-    report: dict[str, Any] | None = field(default=None, repr=False)
+    def __init__(
+        self,
+        nodes: Rows,
+        edges: Rows,
+        radii: Column | None = None,
+        edge_radii: Column | Rows | None = None,
+        roots: Column | None = None,
+        *,
+        labels: list[Any] | None = None,
+        original_node: Ints | None = None,
+        displacement: Floats | None = None,
+        report: dict[str, Any] | None = None,
+    ) -> None:
+        if radii is None and edge_radii is None:
+            raise ValueError("radii: neither nodes nor edges have radii: give radii or edge_radii")
+        self.nodes = _arrays.floats("nodes", nodes, 3)
+        of_nodes = ("nodes", len(self.nodes))
+        self.edges = _arrays.indices("edges", edges, 2, *of_nodes)
+        self.radii = _arrays.optional(_radii, "radii", radii, None, of_nodes)
+        columns = 2 if np.ndim(edge_radii) == 2 else None  # type: ignore[arg-type]
+        self.edge_radii = _arrays.optional(_radii, "edge_radii", edge_radii, columns, ("edges", len(self.edges)))
+        self.roots = _arrays.optional(_arrays.indices, "roots", roots, None, *of_nodes)
+        #: Names of the nodes in a graph, or None.
+        self.labels = labels
+        #: Node of the input that each node stems from (n,), in results of ``prepare``, ``refine`` and ``dual``.
+        self.original_node = original_node
+        #: Displacement of each node (n, 3), in results of ``refine``.
+        self.displacement = displacement
+        #: The program's report of the run; empty without one.
+        self.report = report or {}
 
-    def __post_init__(self) -> None:
-        self.nodes = _arrays.floats("nodes", self.nodes, 3)
-        self.edges = _arrays.indices("edges", self.edges, 2, "nodes", len(self.nodes))
-        if self.radii is None and self.edge_radii is None:
-            raise ValueError("radii: neither nodes nor edges have any; give radii or edge_radii")
-        if self.radii is not None:
-            self.radii = _radii("radii", self.radii, None, ("nodes", len(self.nodes)))
-        if self.edge_radii is not None:
-            columns = 2 if np.ndim(self.edge_radii) == 2 else None
-            self.edge_radii = _radii("edge_radii", self.edge_radii, columns, ("edges", len(self.edges)))
-        if self.roots is not None:
-            self.roots = _arrays.indices("roots", self.roots, None, "nodes", len(self.nodes))
+    def __repr__(self) -> str:
+        return f"Network({len(self.nodes):,} nodes, {len(self.edges):,} edges)"
 
     @classmethod
     def of(cls, network: NetworkLike) -> Network:
-        """A network from what is one: itself, a mapping or tuple of its arrays, or a graph of networkx."""
+        """The network itself, or one made from a tuple or mapping of its arrays or from a graph of networkx."""
         if isinstance(network, cls):
             return network
-        if hasattr(network, "nodes") and hasattr(network, "edges") and hasattr(network, "adj"):
+        if is_graph(network):
             return cls.from_networkx(network)
         if isinstance(network, Mapping):
             return cls(**network)
         if isinstance(network, tuple) and len(network) == 3:
-            nodes, edges, radii = network
-            return cls(nodes, edges, radii)
+            return cls(*network)
         raise TypeError(
-            f"a network is needed, not {type(network).__name__}: a Network, a tuple (nodes, edges, radii), a dict of these, a "
-            "graph of networkx, or the path of a file"
+            f"a network is needed, not {type(network).__name__}: nodes, edges and radii, a Network, a graph of networkx, "
+            "a pyvista.PolyData with lines, or the path of a file"
         )
 
     @classmethod
-    def from_networkx(cls, graph: Any) -> Network:
-        """A graph whose nodes have a position (``pos``, ``position``, or ``x``, ``y`` and ``z``) and a ``radius``; radii may be
-        those of the edges instead. Nodes are numbered in the order of the graph; their names are ``labels``."""
+    def from_networkx(cls, graph: GraphLike) -> Network:
+        """A network from a graph whose nodes have a position (``pos``, ``position``, or ``x``, ``y`` and ``z``) and a ``radius``.
+
+        Edges may have the radii instead. Nodes keep the order of the graph, and their names are ``labels``.
+        """
         labels = list(graph.nodes)
         number = {label: i for i, label in enumerate(labels)}
         data = [graph.nodes[label] for label in labels]
@@ -80,8 +94,8 @@ class Network:
         edge_radii = _attribute("edge", [((a, b), of) for a, b, of in listed], _RADII)
         return cls(nodes, edges, radii, edge_radii, labels=labels)
 
-    def to_networkx(self) -> Any:
-        """A graph of networkx: nodes with ``pos`` and ``radius``, edges with ``radius``, under the names that they came with."""
+    def to_networkx(self) -> networkx.Graph:
+        """A graph of networkx: nodes with ``pos`` and ``radius``, edges with ``radius``, with the names in ``labels``."""
         import networkx
 
         labels = self.labels if self.labels is not None else list(range(len(self.nodes)))
@@ -95,7 +109,7 @@ class Network:
         return graph
 
     def node(self, label: Any) -> int:
-        """The number of a node that is called so."""
+        """Number of the node with a label."""
         if self.labels is None:
             return int(label)
         try:
@@ -103,8 +117,19 @@ class Network:
         except ValueError:
             raise ValueError(f"there is no node {label!r} in the graph") from None
 
-    def write(self, folder: str) -> str:
-        """Writes it for the program; returns the path."""
+    def save(self, path: StrPath, **options: Unpack[ConvertOptions]) -> None:
+        """Writes a .vtp or .npyd file, or .swc for a tree; the keyword arguments are those of ``convert``."""
+        _files.save(self, path, options)
+
+    @classmethod
+    def load(cls, path: StrPath) -> Network:
+        """Reads a network in any format that the program reads."""
+        if _files.is_folder_of_arrays(path):
+            return cls._read(os.fspath(path))
+        return _files.load(path, "network.npyd", cls._read)
+
+    def _write(self, folder: str) -> str:
+        """Writes it for the program and returns the path."""
         path = os.path.join(folder, "network.npyd")
         os.mkdir(path)
         arrays: dict[str, Array | None] = {"nodes": self.nodes, "edges": self.edges, "radii": self.radii}
@@ -112,27 +137,38 @@ class Network:
         return path
 
     @classmethod
-    def load(cls, folder: str, report: dict[str, Any] | None, given: Network | None) -> Network:
+    def _read(cls, folder: str, report: dict[str, Any] | None = None, given: Network | None = None) -> Network:
         """Reads what the program has written."""
-        parts = ("nodes", "edges", "radii", "edge_radii", "original_node", "displacement")
-        arrays = {name: _arrays.read(folder, name) for name in parts}
+        parts = ("nodes", "edges", "radii", "edge_radii", "roots", "original_node", "displacement")
+        arrays = {name: _arrays.read(folder, name) for name in parts if os.path.exists(os.path.join(folder, f"{name}.npy"))}
         labels = None
-        original = arrays["original_node"]
-        # Where a node was split, or put in, names would not tell the new ones apart.
-        if given is not None and given.labels is not None and len(np.unique(original)) == len(original):
+        original = arrays.get("original_node")
+        # A node that was split or added has no label of its own.
+        if given is not None and given.labels is not None and original is not None and len(np.unique(original)) == len(original):
             labels = [given.labels[i] for i in original] if original.max(initial=0) < len(given.labels) else None
         return cls(**arrays, labels=labels, report=report)
 
 
-#: What can be given as a network: arrays, a graph of networkx, or the path of a file.
-NetworkLike = Union[Network, Mapping[str, Any], tuple[Any, Any, Any], "os.PathLike[str]", str, Any]
+#: Networks that functions accept, beside three arrays.
+NetworkLike = Network | Mapping[str, Any] | tuple[Any, Any, Any] | ForeignNetwork | StrPath
+
+
+def write_network(folder: str, network: NetworkLike) -> str:
+    """Path of a network, which is written to ``folder`` if it is not a file."""
+    if isinstance(network, (str, os.PathLike)):
+        return os.fspath(network)
+    if has_lines(network):
+        path = os.path.join(folder, "network.vtp")
+        network.save(path)
+        return path
+    return Network.of(network)._write(folder)
 
 
 def _radii(name: str, values: Any, columns: int | None, rows: tuple[str, int]) -> Floats:
-    # Radii that cannot be used are filled by the program, which says so.
+    # Unusable radii are allowed: the program fills them and says so.
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"{name}: has the dtype {array.dtype}, and real numbers are needed")
+        raise ValueError(f"{name}: the dtype is {array.dtype}: give real numbers")
     usable = np.where(np.isfinite(array), array, 0.0)
     _arrays.floats(name, usable, columns, rows)
     return array.astype(np.float64, copy=False)
@@ -145,20 +181,20 @@ def _position(label: Any, of: Mapping[str, Any]) -> Any:
     if found is None:
         raise ValueError(f"node {label!r} has no position: give it 'pos', or 'x', 'y' and 'z'")
     if np.shape(found) != (3,):
-        raise ValueError(f"node {label!r} has the position {found!r}, and three coordinates are needed")
+        raise ValueError(f"node {label!r} has the position {found!r}: give three coordinates")
     return found
 
 
 def _attribute(kind: str, items: list[tuple[Any, Mapping[str, Any]]], names: tuple[str, ...]) -> Floats | None:
-    """What all items have under one of the names; None where none of them has it."""
+    """Values of an attribute that all items have under one of the names; None if no item has it."""
     for name in names:
         have = [name in of for _, of in items]
         if not any(have):
             continue
         if not all(have):
-            raise ValueError(f"{kind} {items[have.index(False)][0]!r} has no '{name}', which others have")
+            raise ValueError(f"{kind} {items[have.index(False)][0]!r} has no '{name}': give it to all or to none")
         for label, of in items:
             if not isinstance(of[name], (int, float, np.number)):
-                raise ValueError(f"{kind} {label!r} has the {name} {of[name]!r}, and a number is needed")
+                raise ValueError(f"{kind} {label!r} has the {name} {of[name]!r}: give a number")
         return np.array([of[name] for _, of in items], dtype=np.float64)
     return None

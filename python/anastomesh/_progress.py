@@ -1,4 +1,4 @@
-"""How far a run is."""
+"""Progress of a run."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 
 class Progress(NamedTuple):
-    """So much of a stage is done, in units of its own; ``total`` is 0 where it is not known."""
+    """Progress of a stage: ``done`` of ``total`` units; ``total`` is 0 if it is unknown."""
 
     stage: str
     done: int
@@ -15,22 +15,22 @@ class Progress(NamedTuple):
 
     @property
     def fraction(self) -> float | None:
-        """The share of the stage that is done, from 0 to 1; None where that is not known."""
+        """Share of the stage that is done, from 0 to 1, or None if it is unknown."""
         return min(self.done / self.total, 1.0) if self.total else None
 
 
-#: What ``progress=`` takes: a function that is called with each :class:`Progress`, True for bars of tqdm, False for none.
+#: Values of ``progress=``: a function that gets each :class:`Progress`, True for progress bars of tqdm, or False.
 ProgressLike = bool | Callable[[Progress], Any] | None
 
 
 class _Bars:
-    """A bar of tqdm for each stage, one after the other."""
+    """Progress bars of tqdm, one for each stage."""
 
     def __init__(self) -> None:
         try:
             from tqdm.auto import tqdm
         except ImportError as error:
-            raise ImportError("progress=True shows bars of tqdm: pip install tqdm, or give a function instead") from error
+            raise ImportError("progress=True needs tqdm: pip install tqdm, or give a function instead") from error
         self._tqdm: Any = tqdm
         self._bar: Any = None
         self._stage: str | None = None
@@ -51,12 +51,12 @@ class _Bars:
 
 
 def listener(progress: ProgressLike) -> tuple[Callable[[Progress], Any] | None, Callable[[], None]]:
-    """What is called with each progress, and what is called in the end."""
+    """Function that gets each progress, and function that is called at the end."""
     if progress is True:
         bars = _Bars()
         return bars, bars.close
     if progress is None or progress is False:
         return None, lambda: None
     if not callable(progress):
-        raise TypeError(f"progress is {progress!r}; give a function, True for bars of tqdm, or False")
+        raise TypeError(f"progress={progress!r}: give a function, True for progress bars, or False")
     return progress, lambda: None

@@ -1,53 +1,73 @@
-"""Runs the program: options to arguments, its lines to progress and messages, its exit code to an exception."""
+"""Runs of the program: its lines become progress and messages, its exit code an exception."""
 
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from ._binary import binary
-from ._errors import error_of
+from ._errors import Error, error_of
 from ._progress import Progress, ProgressLike, listener
 
-# What this package says itself.
-_OURS = {"output", "json", "quiet", "progress", "from", "to", "format", "help", "version"}
+_Made = TypeVar("_Made")
 
-# Seconds that a run may take to end after it was told to; then it is told again, and then it is killed.
+# Seconds that the program may take to end after a signal, before it gets the next one.
 _PATIENCE = 10.0
 
 
 class Done(NamedTuple):
-    """A run that has ended."""
+    """Result of a run."""
 
     code: int
+    #: What the program printed as JSON.
     report: dict[str, Any] | None
-    #: The lines that it has said.
+    #: Lines that the program wrote to standard error.
     messages: tuple[str, ...]
 
     @property
     def message(self) -> str:
-        """The error among the lines: what begins with the program's name, or all of them."""
-        name = "anastomesh: "
-        said = [i for i, line in enumerate(self.messages) if line.startswith(name)]
-        # What stands behind it belongs to it.
-        lines = self.messages[said[-1] :] if said else self.messages
-        return "\n".join(lines).strip().removeprefix(name).removeprefix("error: ")
+        """The error among the messages: from the last line that names the program, or all of them."""
+        starts = ("anastomesh: ", "error: ")
+        said = [i for i, line in enumerate(self.messages) if line.startswith(starts)]
+        # Lines that follow belong to it.
+        text = "\n".join(self.messages[said[-1] :] if said else self.messages).strip()
+        for start in starts:
+            text = text.removeprefix(start)
+        return text
 
-    def error(self, result: Any = None) -> Exception:
+    def error(self, result: Any = None) -> Error:
         """The exception for the exit code."""
         return error_of(self.code, self.message, report=self.report, result=result, messages=self.messages)
+
+    def saying(self, change: Callable[[str], str | None]) -> Done:
+        """The same run with every message changed, or left out for None."""
+        changed = (change(line) for line in self.messages)
+        return self._replace(messages=tuple(line for line in changed if line is not None))
+
+    def made(self, result: _Made | None) -> _Made:
+        """The result; raises the exception of a run that failed, with the result if there is one."""
+        if self.code:
+            raise self.error(result)
+        if result is None:
+            raise Error("the program ended without an error and without a result", report=self.report, messages=self.messages)
+        return result
+
+    def ensure_success(self) -> Done:
+        """Raises the exception of a run that failed."""
+        if self.code:
+            raise self.error()
+        return self
 
 
 @contextmanager
 def work_folder() -> Iterator[str]:
-    """A folder for arrays on their way; what is mapped stays readable when it is gone."""
+    """Temporary folder for arrays; mapped arrays stay readable after it is removed."""
     folder = tempfile.mkdtemp(prefix="anastomesh-")
     try:
         yield folder
@@ -55,38 +75,14 @@ def work_folder() -> Iterator[str]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def arguments(options: Mapping[str, Any]) -> list[str]:
-    """Options as the command line has them: ``max_volume=0.1`` is ``--max-volume 0.1``, True a flag, a list several times."""
-    words = []
-    for name, value in options.items():
-        if name in _OURS:
-            raise TypeError(f"{name} is not for the caller to give")
-        flag = "--" + name.replace("_", "-")
-        values = value if isinstance(value, Sequence) and not isinstance(value, str) else [value]
-        for one in values:
-            if one is None or one is False:
-                continue
-            if one is True:
-                words.append(flag)
-                continue
-            if not isinstance(one, (str, int, float, os.PathLike)) and not hasattr(one, "__float__"):
-                raise TypeError(f"{name} is {one!r}; give a number, a text, True or a list of these")
-            # With a sign of its own a value would look like an option.
-            words.append(f"{flag}={os.fspath(one) if isinstance(one, os.PathLike) else one}")
-    return words
-
-
-def run(verb: str, words: Sequence[str], progress: ProgressLike = None, *, folder: str = "", tells: bool = True) -> Done:
-    """Runs a verb to its end. ``folder``: that of the arrays, which messages need not name; ``tells``: whether the verb knows
-    ``--progress``."""
+def run(words: Sequence[str], progress: ProgressLike = None) -> Done:
+    """Runs the program with the arguments ``words`` to its end."""
     hear, close = listener(progress)
-    command = [binary(), verb, *words, "--json"]
-    if tells:
-        # Without anybody who listens it is still the way in which the program learns that this one is gone.
-        command += ["--progress", "json"]
     with tempfile.TemporaryFile() as out:
-        # In a session of its own: Ctrl-C in a terminal reaches this process alone, which passes it on once.
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE, start_new_session=True)
+        # A session of its own: Ctrl-C in a terminal reaches this process alone, which passes it on once.
+        process = subprocess.Popen(
+            [binary(), *words], stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE, start_new_session=True
+        )
         try:
             messages = _listen(process, hear)
             code = process.wait()
@@ -98,7 +94,7 @@ def run(verb: str, words: Sequence[str], progress: ProgressLike = None, *, folde
                 process.stderr.close()
             close()
         out.seek(0)
-        return Done(code, _report(out.read()), tuple(line.replace(folder + os.sep, "") for line in messages))
+        return Done(code, _report(out.read()), messages)
 
 
 def _listen(process: subprocess.Popen[bytes], hear: Callable[[Progress], Any] | None) -> tuple[str, ...]:
@@ -114,7 +110,7 @@ def _listen(process: subprocess.Popen[bytes], hear: Callable[[Progress], Any] | 
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:
-    """Ends the program as Ctrl-C does: it leaves nothing partial."""
+    """Stops the program as Ctrl-C does, so that it removes partial files."""
     if process.stderr is not None:
         process.stderr.close()
     for how in (signal.SIGINT, signal.SIGINT, signal.SIGKILL):
@@ -125,7 +121,7 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
         except subprocess.TimeoutExpired:
             continue
         except KeyboardInterrupt:
-            # Asked for once more: without patience.
+            # A second Ctrl-C does not wait.
             process.kill()
             process.wait()
             return

@@ -1,84 +1,80 @@
-"""The class that users of PyPI's ``tetgen`` know: where ``tetgen.TetGen`` is called, ``anastomesh.TetGen`` can be."""
+"""Drop-in replacement for the class ``TetGen`` of PyPI's ``tetgen``."""
 
 from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._api import tetrahedralize as _tetrahedralize
-from ._arrays import Array, Floats, Ints
+from ._arrays import Array, Column, Floats, Ints, Rows
+from ._foreign import ForeignSurface, is_surface, triangles_of
 from ._mesh import Mesh
 from ._progress import ProgressLike
+from ._surface_verbs import tetrahedralize as _tetrahedralize
+from .options import StrPath
+from .options.tetgen import IgnoredOptions, TetGenOptions
 
-#: Keywords that say how TetGen goes about it: nothing here depends on them.
-_WITHOUT_EFFECT = frozenset(
-    """brio_hilbert flipinsert diagnose noexact nostaticfilter zeroindex neighout meditview vtkview vtksurfview nobound
-    nonodewritten noelewritten nofacewritten noiterationnum docheck quiet nowarning verbose vertexperblock
-    tetrahedraperblock shellfaceperblock supsteiner_level addsteiner_algo cdtrefine coarsen_param weighted_param
-    fliplinklevel flipstarsize fliplinklevelinc opt_max_flip_level opt_scheme opt_iterations smooth_cirterion
-    smooth_maxiter delmaxfliplevel reversetetori steinerleft unflip_queue_limit no_sort hilbert_order hilbert_limit
-    brio_threshold brio_ratio opt_max_asp_ratio opt_max_edge_ratio optmaxdihedral smooth_alpha
-    refine_progress_ratio maxvolume_length nomergefacet nomergevertex nojettison epsilon facet_separate_ang_tol
-    collinear_ang_tol facet_small_ang_tol""".split()
-)
+if TYPE_CHECKING:
+    import pyvista
+    from typing_extensions import Unpack
 
-#: Keywords that ask for something else than is made here, unless they have these values.
+#: Keywords that ask for another result: their only accepted value, and the reason.
 _REFUSED: dict[str, tuple[Any, str]] = {
-    "psc": (False, "there are no curved surfaces"),
-    "refine": (False, "a mesh cannot be refined: mesh its surface anew with the bounds that you want"),
+    "psc": (False, "curved surfaces are not supported"),
+    "refine": (False, "a mesh cannot be refined: mesh its surface again with tighter bounds"),
     "cdt": (False, "the boundary is split (nobisect=False) or kept (nobisect=True)"),
-    "coarsen": (False, "meshes are not made coarser"),
-    "weighted": (False, "there are no weights"),
-    "metric": (False, "there is no background mesh: give maxvolume, or add_region with max_vol"),
-    "insertaddpoints": (False, "there is no list of points to be inserted: give them as points of the surface"),
+    "coarsen": (False, "coarsening is not supported"),
+    "weighted": (False, "weights are not supported"),
+    "metric": (False, "background meshes are not supported: give maxvolume, or add_region with max_vol"),
+    "insertaddpoints": (False, "lists of added points are not supported: give them as points of the surface"),
     "convex": (False, "the convex hull is not filled: give the points alone to anastomesh.tetrahedralize"),
-    "voroout": (False, "there is no Voronoi diagram"),
-    "bgmesh": (None, "there is no background mesh: give maxvolume, or add_region with max_vol"),
-    "bgmeshfilename": ("", "there is no background mesh: give maxvolume, or add_region with max_vol"),
-    "coarsen_percent": (1.0, "meshes are not made coarser"),
-    "metric_scale": (1.0, "there is no background mesh"),
-    "elem_growth_ratio": (0.0, "there is no background mesh"),
+    "voroout": (False, "Voronoi diagrams are not written"),
+    "bgmesh": (None, "background meshes are not supported: give maxvolume, or add_region with max_vol"),
+    "bgmeshfilename": ("", "background meshes are not supported: give maxvolume, or add_region with max_vol"),
+    "coarsen_percent": (1.0, "coarsening is not supported"),
+    "metric_scale": (1.0, "background meshes are not supported"),
+    "elem_growth_ratio": (0.0, "background meshes are not supported"),
 }
 
 
 class TetGen:
-    """A surface on its way to a mesh: ``TetGen(polydata)``, ``TetGen(points, triangles)`` or ``TetGen(path)``."""
+    """A surface to be filled: ``TetGen(polydata)``, ``TetGen(points, triangles)`` or ``TetGen(path)``."""
 
-    def __init__(self, arg0: Any, arg1: Any = None, arg2: Any = None) -> None:
+    def __init__(self, arg0: ForeignSurface | StrPath | Rows, arg1: Rows | None = None, arg2: Column | None = None) -> None:
         self._markers = arg2
         self._holes: list[Sequence[float]] = []
         self._regions: list[tuple[Sequence[float], int, float]] = []
         self._repairs = False
         self._all_edges = self._all_faces = False
         self._made: Mesh | None = None
+        points: Any = arg0
+        triangles: Any = arg1
         if isinstance(arg0, (str, os.PathLike)):
             import pyvista
 
-            arg0 = pyvista.read(os.fspath(arg0))
-        if arg1 is None:
-            if not hasattr(arg0, "faces"):
+            points = pyvista.read(os.fspath(arg0))
+        if triangles is None:
+            if not is_surface(points):
                 raise TypeError("a surface is needed: a PolyData, points and triangles, or the path of a file")
-            if not getattr(arg0, "is_all_triangles", True):
+            if not getattr(points, "is_all_triangles", True):
                 raise RuntimeError("Invalid mesh. Must be an all triangular mesh.")
-            self.v: Floats = np.asarray(arg0.points, dtype=np.float64)
-            self.f: Ints = np.asarray(arg0.faces).reshape(-1, 4)[:, 1:]
-        else:
-            self.v, self.f = np.asarray(arg0, dtype=np.float64), np.asarray(arg1)
+            points, triangles = triangles_of(points)
+        self.v: Floats = np.asarray(points, dtype=np.float64)
+        self.f: Ints = np.asarray(triangles)
 
     def add_hole(self, point_in_hole: Sequence[float]) -> None:
-        """The part of space around a point stays empty."""
+        """Keeps the part of space around a point empty."""
         self._holes.append(point_in_hole)
 
     def add_region(self, id: int, point_in_region: Sequence[float], max_vol: float = 0.0) -> None:
-        """The part of space around a point has a number, and may have a bound on its volumes."""
+        """Gives a number, and optionally a maximum volume, to the part of space around a point."""
         self._regions.append((point_in_region, id, max_vol))
 
     def make_manifold(self, verbose: bool = False) -> None:
-        """Has the surface repaired when it is filled: triangles turned, what is there twice joined; nothing else."""
+        """Orients triangles and merges equal points when the surface is filled. It repairs nothing else."""
         self._repairs = True
 
     def tetrahedralize(
@@ -98,12 +94,12 @@ class TetGen:
         order: int = 1,
         switches: str = "",
         progress: ProgressLike = None,
-        **others: Any,
+        **others: Unpack[TetGenOptions],
     ) -> tuple[Floats, Ints, Floats, Ints]:
-        """Fills the surface: points, tetrahedra, regions of the tetrahedra (with ``regionattrib``) and markers of the faces.
+        """Fills the surface; returns points, tetrahedra, regions of tetrahedra (with ``regionattrib``) and markers of faces.
 
-        Keywords that only say how TetGen goes about it are passed over; what asks for another result is refused with a
-        ``NotImplementedError``. ``switches`` are TetGen's, instead of all keywords.
+        Keywords that tune algorithms of TetGen are ignored. Keywords that ask for another result raise ``NotImplementedError``.
+        ``switches`` are TetGen's and replace all keywords.
         """
         _refuse(others, order)
         if not switches:
@@ -128,18 +124,18 @@ class TetGen:
 
     @property
     def is_tetrahedralized(self) -> bool:
-        """Whether there is a mesh."""
+        """True if there is a mesh."""
         return self._made is not None
 
     @property
     def _mesh(self) -> Mesh:
         if self._made is None:
-            raise AttributeError("there is no mesh yet: run tetrahedralize() first")
+            raise AttributeError("there is no mesh yet: call tetrahedralize() first")
         return self._made
 
     @property
     def node(self) -> Floats:
-        """Points (n, 3): those of the surface first, in their order."""
+        """Points (n, 3): those of the surface in their order, then added ones."""
         return self._mesh.points
 
     @property
@@ -149,7 +145,7 @@ class TetGen:
 
     @property
     def attributes(self) -> Floats:
-        """Region of each tetrahedron (m, 1); empty where none were asked for."""
+        """Region of each tetrahedron (m, 1); empty without ``regionattrib``."""
         regions = self._mesh.regions
         asked = regions is not None and bool(np.any(regions != 0))
         return np.asarray(regions, dtype=np.float64).reshape(-1, 1) if asked else np.zeros((0, 0))
@@ -175,7 +171,7 @@ class TetGen:
         return _faces(self.elem if self._all_edges else self._mesh.triangles, 2)
 
     @property
-    def grid(self) -> Any:
+    def grid(self) -> pyvista.UnstructuredGrid:
         """The tetrahedra as a ``pyvista.UnstructuredGrid``."""
         import pyvista
 
@@ -185,40 +181,42 @@ class TetGen:
         return grid
 
     @property
-    def mesh(self) -> Any:
+    def mesh(self) -> pyvista.PolyData:
         """The surface as a ``pyvista.PolyData``."""
         import pyvista
 
-        return pyvista.PolyData.from_regular_faces(self.v, self.f.astype(int))
+        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.v, self.f.astype(int))
+        return surface
 
     def plot(self, **options: Any) -> Any:
-        """Shows the mesh."""
+        """Plots the mesh with pyvista, which gets the keyword arguments."""
         return self.grid.plot(**options)
 
-    def write(self, filename: str | os.PathLike[str], binary: bool = True) -> None:
-        """Writes the mesh by pyvista: .vtk or .vtu."""
+    def write(self, filename: StrPath, binary: bool = True) -> None:
+        """Writes a .vtk or .vtu file with pyvista."""
         self.grid.save(os.fspath(filename), binary=binary)
 
 
-def _refuse(others: dict[str, Any], order: int) -> None:
-    """Says of keywords what they would have done."""
+def _refuse(others: Mapping[str, Any], order: int) -> None:
+    """Raises an exception for keywords that are unknown or ask for another result."""
     if order != 1:
-        raise NotImplementedError(f"order={order}: tetrahedra have four corners here; order=1 is what there is")
+        raise NotImplementedError(f"order={order} is not supported: tetrahedra have four corners: use order=1")
     for name, value in others.items():
         if name in _REFUSED:
             usual, instead = _REFUSED[name]
             if value is not usual and value != usual:
                 shown = repr(value) if isinstance(value, (bool, int, float, str)) else type(value).__name__
                 raise NotImplementedError(f"{name}={shown} is not supported: {instead}")
-        elif name not in _WITHOUT_EFFECT:
-            raise TypeError(f"{name} is no keyword of TetGen.tetrahedralize")
+        elif name not in IgnoredOptions.__annotations__:
+            raise TypeError(f"tetrahedralize() got an unexpected keyword argument {name!r}")
         elif name == "steinerleft" and value >= 0 and value != 100000:
-            warnings.warn(f"steinerleft={value}: the number of points that are added is not bounded", stacklevel=3)
+            warnings.warn(f"steinerleft={value} is ignored: the number of added points is not limited", stacklevel=3)
 
 
 def _faces(cells: Array, corners: int) -> Ints:
-    """The faces or edges of cells, each once, its corners ascending."""
+    """Faces or edges of cells, each once, with ascending corners."""
     from itertools import combinations
 
     chosen = [list(some) for some in combinations(range(cells.shape[1]), corners)]
-    return np.unique(np.sort(np.concatenate([cells[:, some] for some in chosen]), axis=1), axis=0)
+    faces: Ints = np.unique(np.sort(np.concatenate([cells[:, some] for some in chosen]), axis=1), axis=0)
+    return faces

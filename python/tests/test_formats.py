@@ -1,8 +1,11 @@
-"""Meshes as others want them."""
+"""Meshes in the formats of other packages."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import anastomesh
+import networkx as nx
 import numpy as np
 import pytest
 import pyvista
@@ -11,11 +14,12 @@ from conftest import volumes
 
 
 @pytest.fixture
-def mesh(fork) -> Mesh:
+def mesh(fork: nx.Graph) -> Mesh:
     return anastomesh.mesh(fork, data=["radius", "node"])
 
 
-def test_pyvista(mesh):
+def test_pyvista(mesh: Mesh) -> None:
+    assert mesh.markers is not None
     grid = mesh.to_pyvista()
     assert isinstance(grid, pyvista.UnstructuredGrid) and grid.n_cells == len(mesh.tets)
     assert grid.volume == pytest.approx(volumes(mesh.points, mesh.tets).sum())
@@ -25,7 +29,8 @@ def test_pyvista(mesh):
     assert np.array_equal(surface.cell_data["patch"], mesh.markers)
 
 
-def test_meshio(mesh, tmp_path):
+def test_meshio(mesh: Mesh, tmp_path: Path) -> None:
+    assert mesh.markers is not None
     theirs = mesh.to_meshio()
     assert np.array_equal(theirs.cells_dict["tetra"], mesh.tets)
     assert np.array_equal(theirs.get_cell_data("patch", "triangle"), mesh.markers)
@@ -34,7 +39,7 @@ def test_meshio(mesh, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["x.vtu", "x.msh", "x.npyd"])
-def test_what_is_saved_is_loaded(mesh, tmp_path, name):
+def test_what_is_saved_is_loaded(mesh: Mesh, tmp_path: Path, name: str) -> None:
     mesh.save(tmp_path / name)
     back = Mesh.load(tmp_path / name)
     assert np.array_equal(back.points, mesh.points)
@@ -43,7 +48,7 @@ def test_what_is_saved_is_loaded(mesh, tmp_path, name):
     assert anastomesh.check(tmp_path / name)
 
 
-def test_numpy_alone_reads_and_writes_a_mesh(mesh, tmp_path):
+def test_numpy_alone_reads_and_writes_a_mesh(mesh: Mesh, tmp_path: Path) -> None:
     mesh.save(tmp_path / "x.npyd")
     assert np.array_equal(np.load(tmp_path / "x.npyd" / "tets.npy", mmap_mode="r"), mesh.tets)
     folder = tmp_path / "mine.npyd"
@@ -56,7 +61,8 @@ def test_numpy_alone_reads_and_writes_a_mesh(mesh, tmp_path):
         anastomesh.check(folder)
 
 
-def test_a_boundary_is_written(mesh, tmp_path):
+def test_a_boundary_is_written(mesh: Mesh, tmp_path: Path) -> None:
+    assert mesh.markers is not None
     mesh.save(tmp_path / "wall.stl", no_caps=True)
     assert pyvista.read(tmp_path / "wall.stl").n_cells == (mesh.markers == 1).sum()
     with pytest.raises(anastomesh.Error):

@@ -6,7 +6,7 @@ use super::log;
 use super::network::NetworkArgs;
 use crate::pipeline::{MeshPlan, RunReport};
 use crate::report::advice::advice;
-use anastomesh_io::network::{NetworkFile, NetworkOptions};
+use anastomesh_io::network::NetworkFile;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
 use anastomesh_skeleton::{BadSize, NodeSizes, SizeAt};
 use std::fmt;

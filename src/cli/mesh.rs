@@ -10,7 +10,6 @@ use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
-use super::hint;
 use super::layers::LayerArgs;
 use super::limits::{self, BlockPlace};
 use super::log;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::exit::Failure;
+use super::hint;
 use super::stop::NOTHING_KEPT;
 use crate::pipeline::RunError;
 use crate::prepare::PrepareReport;
@@ -12,7 +13,7 @@ use anastomesh_io::network::NetworkNote;
 
 /// Lines for people on what was read and on the cures; with `all` at length.
 pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<String> {
-    let mut lines: Vec<String> = notes.iter().map(ToString::to_string).collect();
+    let mut lines: Vec<String> = notes.iter().map(hint::of_note).collect();
     if report.changed() {
         lines.extend(report.text(all).lines().map(ToString::to_string));
     }
@@ -27,7 +28,7 @@ pub fn failure(error: MeshingError, network: &Path, stopped: impl FnOnce() -> Fa
         MeshingError::Refine(e) => refine_failure(&e),
         MeshingError::Run(RunError::Cancelled) => stopped(),
         MeshingError::Run(e @ (RunError::Root(_) | RunError::Plan(_))) => Failure::usage(e.to_string()),
-        MeshingError::Run(e @ (RunError::TooLarge(_) | RunError::Store(_))) => Failure::input(e.to_string()),
+        MeshingError::Run(e @ (RunError::TooLarge(_) | RunError::Store(_))) => Failure::input(hint::of_run(&e)),
         e @ (MeshingError::Run(_) | MeshingError::Blocks { .. }) => Failure::stage(e.to_string()),
     }
 }

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
-use super::hint;
 use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;

@@ -52,7 +52,6 @@ impl Aabb {
     /// True if the boxes have a point in common.
     #[inline]
     #[allow(clippy::needless_bitwise_bool)]
-    #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
         // Without short circuits: unpredictable branches cost more.
         (self.min.x <= other.max.x)

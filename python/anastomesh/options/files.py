@@ -1,0 +1,28 @@
+"""Options of files that are written."""
+
+from typing import Annotated, Literal, TypedDict
+
+from ._option import Option
+
+
+class CapOptions(TypedDict, total=False):
+    """Caps"""
+
+    no_caps: Annotated[bool, Option("Leave the inlets and outlets of a boundary open, without caps", False)]
+
+
+class FileOptions(TypedDict, total=False):
+    """File"""
+
+    format: Annotated[
+        Literal["vtu", "pvtu", "msh", "msh2", "medit", "openfoam", "simvascular", "npy", "tetgen"] | None,
+        Option("Format of a mesh; found by the extension if absent"),
+    ]
+    float32: Annotated[
+        bool, Option("Round coordinates in VTU and PVTU files to 32 bits; the validity check holds for the exact ones", False)
+    ]
+    cells: Annotated[
+        Literal["all", "tets"],
+        Option("Cells in VTU and PVTU files; with 'tets' the boundary goes to a file NAME_boundary.vtp beside it", "all"),
+    ]
+    compress: Annotated[Literal["zlib", "none"], Option("Compression of arrays in VTU and PVTU files", "zlib")]

@@ -1,0 +1,31 @@
+"""Options of the tetrahedralization of surfaces."""
+
+from typing import Annotated, TypedDict
+
+from ._option import Option
+
+
+class ComplexOptions(TypedDict, total=False):
+    """Surface"""
+
+    plc: Annotated[
+        bool, Option("The input is a piecewise linear complex: facets may lie inside, dangle, and meet by threes", False)
+    ]
+    repair: Annotated[bool, Option("Orient triangles and merge points with equal coordinates first", False)]
+    strict: Annotated[
+        bool, Option("Fail on facets and segments outside the volume or in a hole, instead of leaving them out", False)
+    ]
+    tetgen: Annotated[str | None, Option("TetGen's switches instead of the other options, as 'pYq1.4a0.1'")]
+
+
+class FillingOptions(TypedDict, total=False):
+    """Tetrahedra"""
+
+    refine: Annotated[bool, Option("Add points that improve the shape of tetrahedra", True, flag="", off="no-refine")]
+    max_radius_edge: Annotated[
+        float | None, Option("Maximum ratio of circumradius to shortest edge, where the boundary allows it")
+    ]
+    min_dihedral: Annotated[float | None, Option("Minimum dihedral angle in degrees, where the boundary allows it")]
+    max_volume: Annotated[float | None, Option("Maximum volume of a tetrahedron; a mesh that exceeds it is an InvalidError")]
+    size: Annotated[float | None, Option("Edge length inside; if absent, that of the surface nearby")]
+    split: Annotated[bool, Option("Triangles of the input may be split, as TetGen does without Y", False)]

@@ -1,0 +1,16 @@
+"""Options of boundary layers."""
+
+from typing import Annotated, TypedDict
+
+from ._option import Option
+
+
+class LayerOptions(TypedDict, total=False):
+    """Boundary layers"""
+
+    layers: Annotated[int | None, Option("Number of layers of thin tetrahedra along the wall")]
+    layer_growth: Annotated[float, Option("Thickness of each layer over that of the one before it, from the wall", 2.5)]
+    layer_thickness: Annotated[
+        float,
+        Option("Thickness of all layers as a share of the radius; for general surfaces, of half the local width", 0.12),
+    ]

@@ -1,0 +1,26 @@
+"""Options of the size of elements in the mesh of a network."""
+
+from typing import Annotated, TypedDict
+
+from ._option import Option
+
+
+class ResolutionOptions(TypedDict, total=False):
+    """Resolution"""
+
+    rho: Annotated[float, Option("Voxels across the thinnest vessel of a cluster, at least 2.5; larger is finer", 3)]
+    follow: Annotated[
+        float,
+        Option("How far edge lengths follow the radius of wider vessels: 1 in proportion, 0 as fine as the thinnest vessel", 1),
+    ]
+    stretch: Annotated[float, Option("Length over width of tetrahedra along tubes, from 1 to 20", 1)]
+    size_at: Annotated[
+        float | str | None,
+        Option("Factor for edge lengths at forks, from 0.25 to 1; or the name of an array on the network's nodes"),
+    ]
+    memory: Annotated[str, Option("Memory limit with its unit, as '500MB'", "2GiB")]
+    refine: Annotated[
+        int | bool,
+        Option("Move overlapping vessels apart before meshing: True, or the maximum number of iterations", False),
+    ]
+    keep_going: Annotated[bool, Option("Leave out blocks that fail; the result is then in a StageError", False)]

@@ -1,0 +1,94 @@
+"""Keyword arguments of each function."""
+
+from .common import ConfigOptions, MemoryOptions, PageOptions, ThreadOptions
+from .files import CapOptions, FileOptions
+from .filling import ComplexOptions, FillingOptions
+from .flow import FlowOptions
+from .growth import GrowthOptions
+from .layers import LayerOptions
+from .picture import FaultOptions, PictureOptions
+from .preparation import PreparationOptions
+from .reading import ReadingOptions
+from .refinement import IterationOptions, RefinementOptions
+from .resolution import ResolutionOptions
+from .run import RootOptions, RunOptions, WorkOptions
+
+
+class MeshOptions(
+    ReadingOptions,
+    ResolutionOptions,
+    LayerOptions,
+    RootOptions,
+    FlowOptions,
+    PreparationOptions,
+    RefinementOptions,
+    RunOptions,
+    WorkOptions,
+    PageOptions,
+    ThreadOptions,
+    ConfigOptions,
+    total=False,
+):
+    """Keyword arguments of ``mesh``, ``estimate`` and ``mesh_shard``."""
+
+
+class SurfaceOptions(
+    ReadingOptions,
+    ResolutionOptions,
+    CapOptions,
+    PreparationOptions,
+    RefinementOptions,
+    ThreadOptions,
+    ConfigOptions,
+    total=False,
+):
+    """Keyword arguments of ``surface``."""
+
+
+class PrepareOptions(ReadingOptions, PreparationOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``prepare``."""
+
+
+class RefineOptions(
+    ReadingOptions,
+    IterationOptions,
+    RefinementOptions,
+    PreparationOptions,
+    PageOptions,
+    ThreadOptions,
+    ConfigOptions,
+    total=False,
+):
+    """Keyword arguments of ``refine``."""
+
+
+class NetworkOptions(ReadingOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``dual`` and ``info``."""
+
+
+class GenerateOptions(GrowthOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``generate``."""
+
+
+class CheckSurfaceOptions(ComplexOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``check_surface``."""
+
+
+class TetrahedralizeOptions(FillingOptions, LayerOptions, ComplexOptions, PageOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``tetrahedralize``."""
+
+
+class CheckOptions(MemoryOptions, PageOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``check``."""
+
+
+class ConvertOptions(FileOptions, CapOptions, MemoryOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``convert`` and of ``save``."""
+
+
+class RenderOptions(PictureOptions, ReadingOptions, MemoryOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``render``."""
+
+
+class ViewOptions(FaultOptions, ReadingOptions, ThreadOptions, ConfigOptions, total=False):
+    """Keyword arguments of ``view``."""
