@@ -2,7 +2,8 @@
 //! fixture. On as many threads as there are cores, or `RAYON_NUM_THREADS`.
 
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{MeshPlan, Skeleton, clean, mesh_network};
+use anastomesh::meshing::{MeshPlan, mesh_network};
+use anastomesh::network::{Skeleton, clean};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

@@ -6,7 +6,8 @@
 //! ```
 
 use anastomesh::io::{NetworkOptions, read_network, write_mesh};
-use anastomesh::network::{MeshPlan, RefineParams, Run, Store};
+use anastomesh::meshing::{MeshPlan, Run, Store};
+use anastomesh::network::RefineParams;
 use std::error::Error;
 use std::path::Path;
 

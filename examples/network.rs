@@ -5,7 +5,8 @@
 //! ```
 
 use anastomesh::WALL;
-use anastomesh::network::{MeshPlan, Skeleton, clean, mesh_network};
+use anastomesh::meshing::{MeshPlan, mesh_network};
+use anastomesh::network::{Skeleton, clean};
 use anastomesh::skeleton::{Edge, Node, NodeId};
 use anastomesh::{Point3, TetMesh};
 use std::error::Error;

@@ -5,7 +5,8 @@
 //! ```
 
 use anastomesh::io::{NetworkOptions, read_network, read_surface};
-use anastomesh::network::{MeshPlan, RunError, clean, mesh_network};
+use anastomesh::meshing::{MeshPlan, RunError, mesh_network};
+use anastomesh::network::clean;
 use anastomesh::tet::{TetError, Tetrahedralizer};
 use anastomesh::{Point3, Progress, Stage};
 use std::error::Error;

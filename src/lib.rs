@@ -17,14 +17,10 @@ mod block;
 #[doc(hidden)]
 pub mod cli;
 mod fidelity;
-mod flow;
-mod grow;
 mod partition;
 #[cfg(feature = "cli")]
 mod picture;
 mod pipeline;
-mod prepare;
-mod refine;
 #[cfg(feature = "cli")]
 mod report;
 mod run;
@@ -39,36 +35,19 @@ pub use anastomesh_mesh as mesh;
 pub use anastomesh_mesh::progress::{Progress, Stage};
 pub use anastomesh_mesh::source::MeshSource;
 pub use anastomesh_mesh::{Cap, Patch, Point3, TetMesh, TriMesh, Vec3, VolumeMesh, WALL};
+pub use anastomesh_network as network;
 pub use anastomesh_skeleton as skeleton;
 pub use anastomesh_tet as tet;
 
-/// Vessel networks: cleaning, preparation, refinement and meshing.
+/// Meshing of a network, in memory or by blocks on disk.
 ///
-/// Each operation has its options, its result, and a report of what it did. The other types of networks are in
-/// [`crate::skeleton`].
-pub mod network {
-    // A whole run: preparation, refinement, retries, comparison with the network, flow.
-    pub use crate::fidelity::{Along, Displaced, Displacements, Fidelity};
+/// [`Run`](meshing::Run) does everything that the command `mesh` does: preparation, refinement, retries, comparison with the
+/// network and flow. [`mesh_network`](meshing::mesh_network) and [`mesh_into`](meshing::mesh_into) mesh a network as it is.
+pub mod meshing {
+    // A whole run.
+    pub use crate::fidelity::{Along, Bin, Displaced, Displacements, Fidelity, Spread};
     pub use crate::run::{Attempt, Defect, Fault, MeshingError, NetworkMesh, Networks, PreparedRun, Run, Strategy};
-    // Cleaned.
-    pub use anastomesh_skeleton::{Skeleton, clean};
-    // Synthetic networks.
-    pub use crate::grow::{
-        BedParams, Dual, GenerateError, GenerateParams, Looped, Morphometry, OrderFigures, Organ, Published,
-        RAT_KIDNEY, dual, generate, looped,
-    };
-    // Measured networks prepared.
-    pub use crate::prepare::{
-        ClosedLoop, FilledRadius, Island, JoinedNodes, JoinedReport, MergeReport, Merged, Parting, PrepareParams,
-        PrepareReport, Prepared, RadiusDefect, ResampleReport, ShortTip, Size, Spur, SpurReason, TouchedBy, Touching,
-        TouchingTip, directed, prepare,
-    };
-    // Overlapping vessels moved apart.
-    pub use crate::refine::{
-        Crowded, CrowdedPair, Displacement, FarNode, Figures, Freedom, Metric, RefineError, RefineParams, RefineReport,
-        Refined, Residual, ResidualPair, ResidualReport, Treatment, refine,
-    };
-    // Meshed.
+    // Its steps and reports.
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;
     pub use crate::pipeline::{
@@ -91,27 +70,24 @@ pub mod check {
 #[doc(hidden)]
 pub mod testing {
     pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster};
-    pub use crate::flow::solve as network_flow;
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
     pub use crate::pipeline::replay;
-    pub use crate::refine::split;
     #[cfg(feature = "cli")]
     pub use crate::report::info::NetworkInfo;
     pub use crate::surface::{Field, SurfaceParams, vessel_surface};
+    pub use anastomesh_network::flow::solve as network_flow;
 
     // Types of their signatures.
     pub use crate::block::{
-        Astray, BlockError, CapFaces, ConnectorAttempt, ConnectorFailure, ConnectorFault, Division, EndFault,
-        EndSurface, FlattenFailure, NotOnBoundary,
+        About, Astray, BlockError, BlockInput, CapFaces, ConnectorAttempt, ConnectorFailure, ConnectorFault,
+        ConnectorMesh, Cured, Division, DumpError, EndFault, EndSurface, EndVertex, Finished, FinishedCap,
+        FinishedJoint, FlattenFailure, NotOnBoundary, StoredEnd,
     };
-    pub use crate::flow::NetworkFlow;
-    pub use crate::grow::{OrderFigures, Published};
     pub use crate::partition::{
         BranchPiece, Cut, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
     };
-    pub use crate::refine::{SplitNode, SplitReport};
     pub use crate::report::info::{Quartiles, UnitGuess};
     pub use crate::surface::{CapError, CapFailure, SharedDisc, SurfaceError};
     pub use anastomesh_io::network::{

@@ -4,7 +4,8 @@ mod common;
 
 use anastomesh::Point3;
 use anastomesh::check::{CheckReport, Line, Outcome};
-use anastomesh::network::{JointStyle, MeshPlan, Meshed, RunReport, Skeleton};
+use anastomesh::meshing::{JointStyle, MeshPlan, Meshed, RunReport};
+use anastomesh::network::Skeleton;
 use anastomesh::skeleton::Edge;
 use anastomesh::testing::{Tube, point_tube};
 use common::{mesh, mesh_by, network, shared};

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Source folders of the packages, from the repository's root.
-const PACKAGES: [&str; 5] = ["src", "crates/mesh/src", "crates/skeleton/src", "crates/tet/src", "crates/io/src"];
+const PACKAGES: [&str; 6] =
+    ["src", "crates/mesh/src", "crates/skeleton/src", "crates/network/src", "crates/tet/src", "crates/io/src"];
 
 /// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.
-const LAYERS: [(&str, u32); 16] = [
+const LAYERS: [(&str, u32); 12] = [
     ("main", 7),
     ("cli", 6),
     ("report", 5),
@@ -19,11 +20,7 @@ const LAYERS: [(&str, u32); 16] = [
     ("view", 2),
     ("block", 1),
     ("surface", 0),
-    ("refine", 0),
-    ("prepare", 0),
     ("fidelity", 0),
-    ("flow", 0),
-    ("grow", 0),
     ("partition", 0),
 ];
 

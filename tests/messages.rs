@@ -107,7 +107,9 @@ fn each_is_written_down() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut groups: BTreeMap<String, String> = BTreeMap::new();
     let mut count = 0;
-    for package in ["src", "crates/mesh/src", "crates/skeleton/src", "crates/tet/src", "crates/io/src"] {
+    for package in
+        ["src", "crates/mesh/src", "crates/skeleton/src", "crates/network/src", "crates/tet/src", "crates/io/src"]
+    {
         for path in sources(&root.join(package)) {
             let found = messages(&fs::read_to_string(&path).expect("a source"));
             let inside = path.strip_prefix(root.join(package)).expect("a source of ours");

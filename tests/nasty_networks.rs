@@ -2,7 +2,8 @@
 //! number of each kind instead of one; results are printed by kind.
 
 use anastomesh::Point3;
-use anastomesh::network::{MeshPlan, PrepareParams, RefineParams, RunError, Skeleton, mesh_network, prepare, refine};
+use anastomesh::meshing::{MeshPlan, RunError, mesh_network};
+use anastomesh::network::{PrepareParams, RefineParams, Skeleton, prepare, refine};
 use anastomesh::skeleton::{Edge, Node, NodeId};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

@@ -3,10 +3,10 @@
 mod common;
 
 use anastomesh::io::{NetworkOptions, read_network};
+use anastomesh::network::split;
 use anastomesh::network::{Skeleton, clean};
 use anastomesh::skeleton::CleanReport;
 use anastomesh::testing::NetworkInfo;
-use anastomesh::testing::split;
 use std::path::Path;
 
 fn read(path: &Path, radius_array: Option<&str>) -> (Skeleton, CleanReport) {

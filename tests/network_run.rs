@@ -6,7 +6,8 @@ mod common;
 mod mesh_network;
 
 use anastomesh::Point3;
-use anastomesh::network::{Defect, Fault, MeshingError, RefineParams, Residual, Run, Skeleton, Strategy};
+use anastomesh::meshing::{Defect, Fault, MeshingError, Run, Strategy};
+use anastomesh::network::{RefineParams, Residual, Skeleton};
 use anastomesh::skeleton::{Edge, Node, NodeId};
 use common::fixture;
 use common::program::{FINE, assert_code, mesh};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Crates that the root re-exports as they are.
-const CRATES: [&str; 4] = ["io", "mesh", "skeleton", "tet"];
+const CRATES: [&str; 5] = ["io", "mesh", "network", "skeleton", "tet"];
 
 /// Maximum number of public names of the root crate, without those of the crates that it re-exports.
 const MOST_NAMES: usize = 90;
@@ -70,6 +70,7 @@ fn names_of_each_crate() {
         ("root", ""),
         ("io", "crates/io"),
         ("mesh", "crates/mesh"),
+        ("network", "crates/network"),
         ("skeleton", "crates/skeleton"),
         ("tet", "crates/tet"),
     ] {

@@ -3,7 +3,7 @@
 mod common;
 
 use anastomesh::check::{Line, Outcome};
-use anastomesh::network::Meshed;
+use anastomesh::meshing::Meshed;
 use common::{mesh, network, shared};
 
 fn skeleton(name: &str) -> Option<Meshed> {

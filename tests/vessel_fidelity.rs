@@ -3,7 +3,8 @@
 mod common;
 
 use anastomesh::check::Line;
-use anastomesh::network::{Meshed, Skeleton};
+use anastomesh::meshing::Meshed;
+use anastomesh::network::Skeleton;
 use anastomesh::skeleton::{Edge, Node, NodeId};
 use anastomesh::{Point3, Vec3, VolumeMesh, WALL};
 use std::collections::BTreeSet;

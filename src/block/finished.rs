@@ -43,6 +43,7 @@ pub struct Finished {
 pub struct FinishedJoint {
     /// Vertices in ascending order; the other block has them in equal order.
     pub vertices: Vec<u32>,
+    /// Boundary faces of the disc.
     pub faces: Vec<u32>,
 }
 
@@ -53,6 +54,7 @@ pub struct FinishedCap {
     pub node: NodeId,
     /// Cap plane; its axis points out of the mesh.
     pub section: Section,
+    /// Boundary faces of the disc.
     pub faces: Vec<u32>,
 }
 

@@ -33,8 +33,8 @@ pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector};
 #[cfg(test)]
 pub(crate) use connector_surface::connector_surface;
-pub use connector_surface::{ConnectorEnd, ConnectorFault, Division};
-pub use dump::{BlockDump, BlockInput};
+pub use connector_surface::{ConnectorEnd, ConnectorFault, Division, EndVertex};
+pub use dump::{BlockDump, BlockInput, DumpError};
 pub use end_surface::{CutEnd, EndFault, EndSurface, StoredEnd};
 pub(crate) use end_surface::{CutPlane, cross, crossing, disc_rim};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};

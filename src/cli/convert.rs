@@ -15,7 +15,6 @@ use super::limits;
 use super::log;
 use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::prepare::directed;
 use crate::report::rows::row;
 use anastomesh_io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use anastomesh_io::npy;
@@ -27,6 +26,7 @@ use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
 use anastomesh_mesh::units::grouped;
+use anastomesh_network::directed;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

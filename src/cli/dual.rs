@@ -8,10 +8,10 @@ use super::common::{ended, print};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
-use crate::grow::dual;
 use crate::report::rows::row;
 use anastomesh_io::network::{NetworkArray, ensure_network_writable, write_network};
 use anastomesh_mesh::units::grouped;
+use anastomesh_network::dual;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

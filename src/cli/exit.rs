@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::flow::NotConverged;
+use anastomesh_network::flow::NotConverged;
 
 /// The exit codes, as in `docs/meshing.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,10 +8,10 @@ use serde::Serialize;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::log;
-use crate::grow::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
 use crate::report::rows::row;
 use anastomesh_io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
 use anastomesh_mesh::units::grouped;
+use anastomesh_network::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -79,17 +79,13 @@ impl Args {
             OrganArg::Ellipsoid => Organ::Ellipsoid,
         };
         let usual = GenerateParams::new(organ, self.terminals);
-        GenerateParams {
-            seed: self.seed,
-            terminal_radius: self.terminal_radius.unwrap_or(if self.capillaries {
-                ARTERIOLE
-            } else {
-                usual.terminal_radius
-            }),
-            exponent: self.exponent.unwrap_or(usual.exponent),
-            size: self.size,
-            ..usual
-        }
+        let terminal_radius = if self.capillaries { ARTERIOLE } else { usual.terminal_radius };
+        let exponent = self.exponent.unwrap_or(usual.exponent);
+        usual
+            .seed(self.seed)
+            .terminal_radius(self.terminal_radius.unwrap_or(terminal_radius))
+            .exponent(exponent)
+            .size(self.size)
     }
 }
 

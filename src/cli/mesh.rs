@@ -23,8 +23,6 @@ use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
 use crate::pipeline::{Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, RunReport, Shard, VesselData};
-use crate::prepare::PrepareReport;
-use crate::refine::RefineReport;
 use crate::report::caps;
 use crate::report::fidelity::displaced;
 use crate::report::page::{self, Mark, Section};
@@ -39,6 +37,8 @@ use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_network::PrepareReport;
+use anastomesh_network::RefineReport;
 use anastomesh_skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]

@@ -6,8 +6,8 @@ use super::exit::Failure;
 use super::hint;
 use super::units::Units;
 use crate::pipeline::Inlets;
-use crate::prepare::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
+use anastomesh_network::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
 
 /// Arguments of every verb that reads a network.

@@ -8,9 +8,9 @@ use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
-use crate::prepare::{PrepareParams, PrepareReport, Touching, directed};
 use crate::report::prepare::row_of;
 use anastomesh_io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
+use anastomesh_network::{PrepareParams, PrepareReport, Touching, directed};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -13,14 +13,14 @@ use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::run::{refine_failure, remarks};
 use super::stop::Stop;
-use crate::prepare::PrepareReport;
-use crate::refine::{Crowded, Freedom, Metric, RefineParams, RefineReport, Residual, refine};
 use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{brief, csv, panels};
 use anastomesh_io::network::{ensure_network_writable, refinement_arrays, write_network};
 use anastomesh_io::write_text;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_network::PrepareReport;
+use anastomesh_network::{Crowded, Freedom, Metric, RefineParams, RefineReport, Residual, refine};
 use anastomesh_skeleton::Skeleton;
 
 #[derive(Debug, clap::Args)]
@@ -130,27 +130,25 @@ impl RefineArgs {
 
     /// The parameters for so many iterations.
     pub fn params(&self, iterations: usize) -> RefineParams {
-        RefineParams {
-            iterations,
-            barrier_rate: self.barrier_rate,
-            repel_rate: self.repel_rate,
-            angle_rate: self.angle_rate,
-            clearance: self.clearance,
-            free_terminals: self.free_terminals,
-            freedom: self.freedom(),
-            crowded: match self.crowded_terminals {
+        RefineParams::default()
+            .iterations(iterations)
+            .barrier_rate(self.barrier_rate)
+            .repel_rate(self.repel_rate)
+            .angle_rate(self.angle_rate)
+            .clearance(self.clearance)
+            .free_terminals(self.free_terminals)
+            .freedom(self.freedom())
+            .crowded(match self.crowded_terminals {
                 CrowdedArg::Keep => Crowded::Keep,
                 CrowdedArg::Part => Crowded::Part,
                 CrowdedArg::Merge => Crowded::Merge,
-            },
-            residual: match self.residual {
+            })
+            .residual(match self.residual {
                 ResidualArg::Report => Residual::Report,
                 ResidualArg::Shrink => Residual::Shrink,
                 ResidualArg::Fuse => Residual::Fuse,
-            },
-            hold: self.hold.clone(),
-            ..RefineParams::default()
-        }
+            })
+            .hold(self.hold.clone())
     }
 }
 
@@ -174,7 +172,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             log::note(&remark);
         }
     }
-    let params = RefineParams { every: args.every, ..args.how.params(args.iterations) }.fitted(network.report.measured);
+    let params = args.how.params(args.iterations).every(args.every).fitted(network.report.measured);
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let refined = pool.install(|| refine(&network.skeleton, &params, &bars)).map_err(|e| refine_failure(&e))?;

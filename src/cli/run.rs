@@ -6,10 +6,10 @@ use super::exit::Failure;
 use super::hint;
 use super::stop::NOTHING_KEPT;
 use crate::pipeline::RunError;
-use crate::prepare::PrepareReport;
-use crate::refine::RefineError;
 use crate::run::MeshingError;
 use anastomesh_io::network::NetworkNote;
+use anastomesh_network::PrepareReport;
+use anastomesh_network::RefineError;
 
 /// Lines for people on what was read and on the cures; with `all` at length.
 pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<String> {

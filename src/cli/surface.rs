@@ -16,8 +16,6 @@ use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::pipeline::{Clock, Estimate, MeshPlan, RunReport};
-use crate::prepare::PrepareReport;
-use crate::refine::RefineReport;
 use crate::report::summary::Summary;
 use crate::run::{MeshingError, Networks, PreparedRun, Run};
 use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
@@ -26,6 +24,8 @@ use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_network::PrepareReport;
+use anastomesh_network::RefineReport;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -14,11 +14,11 @@ mod wall;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
-use spread::Spread;
 use std::io;
 
-pub use along::Along;
+pub use along::{Along, Bin};
 pub use axis::{Displaced, Displacements};
+pub use spread::Spread;
 pub use tubes::Tubes;
 
 /// Fidelity figures of a mesh.
@@ -42,7 +42,7 @@ pub fn lumen_of(network: &Skeleton) -> f64 {
 
 /// Networks to compare.
 #[derive(Clone, Copy, Debug)]
-pub struct Compared<'a> {
+pub(crate) struct Compared<'a> {
     /// Input network with usable radii.
     pub given: &'a Skeleton,
     /// Resampled input network.
@@ -59,7 +59,7 @@ impl Fidelity {
     ///
     /// # Errors
     /// The mesh cannot be read.
-    pub fn of(networks: Compared, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
+    pub(crate) fn of(networks: Compared, mesh: &dyn MeshSource, volume: f64) -> io::Result<Self> {
         let Compared { given, outline, meshed } = networks;
         let outlined = Tubes::of(outline);
         let wall = wall::spread(&outlined, mesh)?;

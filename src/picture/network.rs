@@ -3,8 +3,8 @@
 use super::canvas::{Canvas, Facet};
 use super::colours::{Colour, Legend, MARKED, Rgb, WALL_COLOURS, of_block};
 use super::outline::Outline;
-use crate::flow::{NotConverged, Orders};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_network::flow::{NotConverged, Orders};
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
 use std::f64::consts::TAU;
 

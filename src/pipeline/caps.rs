@@ -4,12 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use crate::flow::{NetworkFlow, Orders, solve};
 use anastomesh_io::volume::{CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::relabel::Relabelled;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{Cap, Patch, WALL};
+use anastomesh_network::flow::{NetworkFlow, Orders, solve};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// What flows, and how much of it through each inlet.

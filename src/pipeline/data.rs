@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::block::{tet_ratio, triangle_ratio};
 use crate::fidelity::Tubes;
-use crate::flow::{NotConverged, Orders, solve};
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_network::flow::{NotConverged, Orders, solve};
 use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
 use rayon::prelude::*;
 

@@ -5,7 +5,7 @@ use super::error::RunError;
 use super::estimate::Estimate;
 use super::plan::MeshPlan;
 use crate::partition;
-use crate::refine::split;
+use anastomesh_network::split;
 use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};

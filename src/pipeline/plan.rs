@@ -25,7 +25,7 @@ pub enum JointStyle {
 /// Parameters of a run of the mesher.
 ///
 /// ```
-/// use anastomesh::network::MeshPlan;
+/// use anastomesh::meshing::MeshPlan;
 ///
 /// assert!(MeshPlan::default().rho(2.0).validate().is_err());
 /// assert!(MeshPlan::default().rho(4.0).fuse(true).validate().is_ok());

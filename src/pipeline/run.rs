@@ -19,7 +19,6 @@ use super::terminals::{self, TerminalPatches};
 use super::timing::Clock;
 use super::whole::Whole;
 use crate::partition::CutId;
-use crate::refine::split_shared;
 #[cfg(feature = "woven")]
 use crate::woven::Assembly;
 use anastomesh_mesh::check::parts::PartsCheck;
@@ -27,6 +26,7 @@ use anastomesh_mesh::check::{CheckReport, Expectation, check_volume_with};
 use anastomesh_mesh::progress::{Progress, Stage, ask};
 use anastomesh_mesh::source::{MeshSource, SourceCounts, gather};
 use anastomesh_mesh::{VolumeMesh, WALL};
+use anastomesh_network::split_shared;
 use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
 /// A mesh in memory, what it has to be, what was found, what was done.
@@ -65,7 +65,8 @@ pub struct Stored<'a> {
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::network::{MeshPlan, clean, mesh_network};
+/// use anastomesh::meshing::{MeshPlan, mesh_network};
+/// use anastomesh::network::clean;
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;
@@ -106,7 +107,8 @@ pub(crate) fn mesh_in_memory(
 ///
 /// ```
 /// use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
-/// use anastomesh::network::{MeshPlan, Store, clean, mesh_into};
+/// use anastomesh::meshing::{MeshPlan, Store, mesh_into};
+/// use anastomesh::network::clean;
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;

@@ -18,8 +18,8 @@ use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
 use crate::partition::{ClusterId, CutId};
-use crate::refine::split_shared;
 use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_network::split_shared;
 use anastomesh_skeleton::{BranchId, Overlaps, Skeleton};
 use anastomesh_tet::parts::Watch;
 

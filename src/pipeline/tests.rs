@@ -2,14 +2,14 @@
 
 use super::*;
 use crate::block::{Finished, Record, encode};
-use crate::grow::dual;
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
-use crate::refine::{Figures, Freedom, RefineError, RefineParams, refine};
 use anastomesh_mesh::WALL;
 use anastomesh_mesh::adjacency::tet_adjacency;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage, StopsAfter};
 use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_network::dual;
+use anastomesh_network::{Figures, Freedom, RefineError, RefineParams, refine};
 use anastomesh_skeleton::fixtures::tangle;
 use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
 use anastomesh_tet::Layers;
@@ -443,8 +443,7 @@ fn smoothing_and_refinement_stop_as_well() {
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
-    let refined =
-        refine(&h(12.0), &RefineParams { freedom: Freedom::Grown, ..RefineParams::default() }, &StopsAfter::new(0));
+    let refined = refine(&h(12.0), &RefineParams::default().freedom(Freedom::Grown), &StopsAfter::new(0));
     assert!(matches!(refined, Err(RefineError::Cancelled)));
 }
 

@@ -1,8 +1,8 @@
 //! Row of a summary for `prepare`.
 
 use super::rows::row;
-use crate::prepare::{PrepareReport, Size};
 use anastomesh_mesh::units::{counted, grouped};
+use anastomesh_network::{PrepareReport, Size};
 
 /// The network as it came in and as it is now, in one row.
 pub fn row_of(report: &PrepareReport) -> String {

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::plot::{Panel, Series};
 use super::rows::{Ended, row};
-use crate::refine::{HistorySample, RefineReport};
 use anastomesh_mesh::units::{grouped, number, percent as share};
+use anastomesh_network::{HistorySample, RefineReport};
 
 /// Pairs that a summary lists.
 const SPELT_OUT: usize = 3;

@@ -5,12 +5,12 @@ use super::networks::Networks;
 use super::prepared::{PreparedRun, Settings};
 use super::result::NetworkMesh;
 use crate::pipeline::{Estimate, Fluid, Inlets, MeshPlan, Store, TooLarge, Whole};
-use crate::prepare::{PrepareParams, Prepared, Touching, prepare};
-use crate::refine::{RefineParams, Residual};
 use anastomesh_io::network::NetworkFile;
 use anastomesh_io::volume::{BLOOD_DENSITY, BLOOD_VISCOSITY};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::progress::Progress;
+use anastomesh_network::{PrepareParams, Prepared, Touching, prepare};
+use anastomesh_network::{RefineParams, Residual};
 use anastomesh_skeleton::{Extended, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
@@ -18,7 +18,8 @@ use rustc_hash::FxHashSet;
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::network::{RefineParams, Run};
+/// use anastomesh::meshing::Run;
+/// use anastomesh::network::RefineParams;
 ///
 /// let file = read_network("fixtures/tree_30.vtp".as_ref(), &NetworkOptions::default())?;
 /// let made = Run::new(file).refine(RefineParams::default()).mesh(&())?;
@@ -45,7 +46,7 @@ impl Run {
         Self {
             file,
             plan: MeshPlan::default(),
-            prepare: PrepareParams { only_measured: true, ..PrepareParams::default() },
+            prepare: PrepareParams::default().only_measured(true),
             refine: None,
             roots: Vec::new(),
             extension: [0.0; 2],

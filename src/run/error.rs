@@ -2,7 +2,7 @@
 
 use super::networks::Networks;
 use crate::pipeline::{NoTerminal, PlanError, RunError, RunReport, StoreError};
-use crate::refine::RefineError;
+use anastomesh_network::RefineError;
 use anastomesh_skeleton::SkeletonError;
 use std::io;
 

@@ -1,10 +1,10 @@
 //! Networks of a run, from the one that was read to the one that is meshed.
 
 use crate::fidelity::Compared;
-use crate::prepare::{PrepareReport, TouchedBy, TouchingTip, take_back};
-use crate::refine::{RefineReport, Refined};
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_network::{PrepareReport, TouchedBy, TouchingTip, take_back};
+use anastomesh_network::{RefineReport, Refined};
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ impl Networks {
     }
 
     /// Networks to compare a mesh with; `meshed` is the network that was meshed, with nodes split.
-    pub fn compared<'a>(&'a self, meshed: &'a Skeleton) -> Compared<'a> {
+    pub(crate) fn compared<'a>(&'a self, meshed: &'a Skeleton) -> Compared<'a> {
         Compared { given: &self.given, outline: &self.outline, meshed }
     }
 

@@ -8,12 +8,12 @@ use crate::pipeline::{
     Clock, Estimate, Fluid, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
     Store, Stored, TooLarge, Whole, fingerprint, make_share, mesh_in_memory,
 };
-use crate::refine::{RefineParams, Refined, refine};
 use anastomesh_io::network::NetworkNote;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::gather;
+use anastomesh_network::{RefineParams, Refined, refine};
 
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;

@@ -4,10 +4,10 @@ use super::error::MeshingError;
 use super::networks::Networks;
 use crate::fidelity::lumen_of;
 use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_shared};
-use crate::prepare::touching_text;
-use crate::refine::{RefineParams, refine};
 use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
+use anastomesh_network::touching_text;
+use anastomesh_network::{RefineParams, refine};
 use serde::Serialize;
 
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
@@ -158,7 +158,7 @@ impl<'a> Meshing<'a, '_> {
             (Strategy::Unrefined, _) => Some(networks.again(None)),
             (Strategy::WiderClearance, Fault::NoMesh | Fault::Invalid) => {
                 let params = self.refine.as_ref()?;
-                let params = RefineParams { clearance: WIDER * params.clearance, ..params.clone() };
+                let params = params.clone().clearance(WIDER * params.clearance);
                 Some(networks.again(Some(refine(&networks.prepared, &params, self.progress).ok()?)))
             }
             _ => None,

@@ -1,7 +1,7 @@
 //! Networks in the viewer: displayed, or used to look up the vessel of a mesh point.
 
 use super::pack::{Pack, QuantizationGrid};
-use crate::flow::{NotConverged, Orders};
+use anastomesh_network::flow::{NotConverged, Orders};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
 /// Grid resolution of node positions and of radii, in steps.

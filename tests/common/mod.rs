@@ -7,7 +7,8 @@ pub mod program;
 pub mod surfaces;
 
 use anastomesh::io::{NetworkOptions, read_network};
-use anastomesh::network::{MeshPlan, Meshed, RunError, Skeleton, clean, mesh_network};
+use anastomesh::meshing::{MeshPlan, Meshed, RunError, mesh_network};
+use anastomesh::network::{Skeleton, clean};
 use std::path::{Path, PathBuf};
 
 /// Folder of real networks and surfaces beside the checkout, which a user's clone does not have.

@@ -53,6 +53,7 @@ pub mod faults {
     pub use crate::file::FileError;
     pub use crate::text::{Place, TextFault};
     pub use crate::vtk_xml::VtkError;
+    pub use crate::xml::XmlFault;
 }
 
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};

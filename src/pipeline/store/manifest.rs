@@ -20,7 +20,8 @@ pub(crate) const MANIFEST: &str = "anastomesh.json";
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::network::{Manifest, MeshPlan, Store, clean, mesh_into};
+/// use anastomesh::meshing::{Manifest, MeshPlan, Store, mesh_into};
+/// use anastomesh::network::clean;
 ///
 /// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
 /// let (network, _) = clean(&file.skeleton)?;

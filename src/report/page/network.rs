@@ -2,8 +2,8 @@
 
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
-use crate::refine::RefineReport;
 use crate::report::refine::panels;
+use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 

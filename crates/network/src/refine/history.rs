@@ -11,6 +11,7 @@ pub struct HistorySample {
     pub iteration: usize,
     /// Displacement of the nodes.
     pub displacement: Displacement,
+    /// Metrics of the state.
     pub metrics: Metrics,
     /// Vessel pairs pushed apart in this iteration, plus vessels lengthened or opened.
     pub asked: usize,

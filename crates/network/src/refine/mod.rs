@@ -99,7 +99,7 @@ pub struct RefineReport {
     /// Metrics in which the result is worse than the input.
     pub worse: Vec<Metric>,
     /// Metrics over the iterations.
-    pub(crate) history: Vec<HistorySample>,
+    pub history: Vec<HistorySample>,
 }
 
 /// Refines a skeleton (section 3.1 of the paper). Nodes of more than three vessels are split, then the paper's three
