@@ -125,6 +125,9 @@ impl Cancelled {
 }
 
 /// Returns an error if the run was cancelled.
+///
+/// # Errors
+/// [`Cancelled`] inside an [`io::Error`], if the caller asked for a stop.
 pub fn ask(progress: &dyn Progress) -> io::Result<()> {
     if progress.is_cancelled() { Err(io::Error::other(Cancelled)) } else { Ok(()) }
 }

@@ -178,6 +178,9 @@ impl<'a> Cuttability<'a> {
     }
 
     /// Part of a branch that may be cut, or the reason why there is none.
+    ///
+    /// # Errors
+    /// [`Uncuttable`]: why the branch has no window.
     pub fn window(&self, branch: u32) -> Result<CutWindow, Uncuttable> {
         let course = &self.courses.get(branch);
         let [[near0, angle0], [near1, angle1]] = [Way::Onward, Way::Back].map(|way| self.distances(branch, way));

@@ -83,13 +83,15 @@ impl NodalSystem {
             restarts += 1;
         }
         let left = max_norm(&residual);
-        // A residual that is not a number is not accepted either.
-        if total_inflow > 0.0 && !(left <= ACCEPTED * total_inflow) {
+        // NaN is not accepted either.
+        let is_accepted = left <= ACCEPTED * total_inflow;
+        if total_inflow > 0.0 && !is_accepted {
             return Err(NotConverged { residual: left / total_inflow, iterations });
         }
         for _ in 0..SWEEPS {
             for node in 0..pressure.len() {
-                pressure[node] = (self.inflow[node] + self.from_neighbors(node, &pressure)) / self.diagonal[node];
+                pressure[node] =
+                    (self.inflow[node] + self.inflow_from_neighbors(node, &pressure)) / self.diagonal[node];
             }
         }
         Ok(pressure)
@@ -127,7 +129,7 @@ impl NodalSystem {
     /// Returns the product of the matrix and a vector: the net outflow of each node at a pressure.
     fn apply(&self, pressure: &[f64]) -> Vec<f64> {
         (0..pressure.len())
-            .map(|node| self.diagonal[node] * pressure[node] - self.from_neighbors(node, pressure))
+            .map(|node| self.diagonal[node] * pressure[node] - self.inflow_from_neighbors(node, pressure))
             .collect()
     }
 
@@ -137,7 +139,7 @@ impl NodalSystem {
     }
 
     /// Returns the inflow of a node from its neighbours at a pressure of 0.
-    fn from_neighbors(&self, node: usize, pressure: &[f64]) -> f64 {
+    fn inflow_from_neighbors(&self, node: usize, pressure: &[f64]) -> f64 {
         let end = self.row_starts.get(node + 1).copied().unwrap_or(self.entries.len());
         let row = &self.entries[self.row_starts[node]..end];
         row.iter().map(|&(other, g)| g * pressure[other as usize]).sum()

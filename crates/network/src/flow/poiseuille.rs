@@ -20,6 +20,9 @@ const SHORTEST: f64 = 1e-9;
 
 /// Solves for the node pressures. `inlets` holds terminals with their volume inflow rate; all other terminals are
 /// outlets at pressure 0.
+///
+/// # Errors
+/// [`NotConverged`] with the residual, for networks with many loops.
 pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> Result<NetworkFlow, NotConverged> {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);

@@ -52,11 +52,11 @@ impl<'a> LegacyArray<'a> {
         let lower = kind.to_ascii_lowercase();
         let scalar = if lower == "bit" { None } else { Some(scalar_of(&lower).ok_or_else(unknown)?) };
         let count = count.unwrap_or(usize::MAX);
-        let bytes = if !cursor.binary {
-            cursor.take_words(count)
-        } else {
+        let bytes = if cursor.binary {
             let length = scalar.map_or(Some(count.div_ceil(8)), |scalar| count.checked_mul(scalar.size()));
             length.and_then(|length| cursor.take(length))
+        } else {
+            cursor.take_words(count)
         };
         let cut = || VtkLegacyError::CutShort { place, array: shown(name.as_bytes()), count };
         let bytes = bytes.ok_or_else(cut)?;
