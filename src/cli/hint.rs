@@ -24,6 +24,7 @@ pub fn of_store(error: &StoreError) -> String {
         StoreError::Missing { .. } => ", or give --make-missing to have this run make what is not there",
         StoreError::Damaged { .. } => ", or give --make-missing to have this run make them",
         StoreError::Other { .. } => ", or give --restart to throw its blocks away",
+        StoreError::Write { .. } => " (--work-dir)",
         StoreError::Read(_) => ", or start anew with --restart",
         _ => "",
     };
