@@ -1,16 +1,34 @@
-//! Anastomesh turns the skeleton of a vascular network (a graph: node = point with a radius, edge = vessel) into one
-//! tetrahedral volume mesh with a labelled boundary.
+//! Anastomesh turns the skeleton of a vascular network into one tetrahedral volume mesh with a labelled boundary. The
+//! skeleton is a graph: nodes are points with a radius, edges are vessels.
+//!
+//! ![A tree of 30 nodes, coloured by block](https://raw.githubusercontent.com/anastomesh/anastomesh/main/docs/tree.png)
+//!
+//! ```
+//! use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
+//! use anastomesh::meshing::Run;
+//!
+//! let file = read_network("fixtures/tree_30.vtp".as_ref(), &NetworkOptions::default())?;
+//! let made = Run::new(file).mesh(&())?;
+//! assert!(made.is_valid() && made.check.counts.caps == 16);
+//! let folder = tempfile::tempdir()?;
+//! write_mesh(&folder.path().join("tree.vtu"), &made.mesh, &MeshNotes::default())?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! | to | use |
 //! |---|---|
-//! | mesh a network | [`network::Run`] |
+//! | mesh a network | [`meshing::Run`] |
+//! | grow, repair or refine a network | [`network`] |
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
 //! | follow long operations, and stop them | [`Progress`] |
 //!
-//! Points, surfaces and meshes are the plain types of this page. Loops run in the current thread pool of `rayon`; results
-//! do not depend on its size. `ARCHITECTURE.md` describes the crates and modules.
+//! Loops run in the current thread pool of `rayon`; results do not depend on its size. `ARCHITECTURE.md` describes the
+//! crates and modules.
+//!
+//! Features, both on by default: `cli` is the program; `woven` is the joint style of the paper
+//! ([`meshing::JointStyle`]).
 
 mod block;
 #[cfg(feature = "cli")]

@@ -43,7 +43,7 @@ impl Shard {
         }
     }
 
-    /// Reads the number and the count of a shard, such as `3/8`, without checking their range: [`Shard::new`] does.
+    /// Reads the number and the count of a shard, such as `3/8`, without checking their range: `Shard::new` does.
     ///
     /// # Errors
     /// If the text is not two numbers.
