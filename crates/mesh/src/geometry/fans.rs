@@ -15,7 +15,7 @@ const ABSOLUTE: f64 = 1e-280;
 const MOST: usize = 16;
 
 /// Triangles around the vertices of a surface.
-pub struct Fans {
+pub(crate) struct Fans {
     /// Corners, `3 · triangle + i`, grouped by vertex; the corners of vertex `v` end at `ends[v]`.
     corners: Vec<u32>,
     ends: Vec<u32>,

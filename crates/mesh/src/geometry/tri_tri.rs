@@ -304,7 +304,7 @@ pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32
 }
 
 /// As `self_contacts`, with the known fans of the triangles.
-pub fn contacts_with(points: &[Point3], triangles: &[[u32; 3]], fans: &Fans) -> Vec<(u32, u32, Improper)> {
+pub(crate) fn contacts_with(points: &[Point3], triangles: &[[u32; 3]], fans: &Fans) -> Vec<(u32, u32, Improper)> {
     let mut found: Vec<(u32, u32, Improper)> = Vec::new();
     // On a smooth surface nearly all vertices are proved, and neighbours there need no test: the tree has one box for the
     // triangles of such a vertex. Boxes are in the order of `grouped`.
