@@ -1,6 +1,7 @@
 //! Shape of tetrahedra and triangles: radius ratio, dihedral and corner angles, and their distribution over a mesh.
 
 use super::{TET_FACES, TetMesh};
+use crate::geometry::predicates::{ORIENT3D_BOUND, orient3d};
 use crate::geometry::{Point3, Vec3};
 
 /// Number of equal bins over [0, 1] in `TetQuality::histogram`.
@@ -24,20 +25,32 @@ pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     Spokes::new([a, b, c, d]).radius_ratio()
 }
 
-/// Common terms of ratio and angles: the edges from the first vertex, their cross products and six volumes.
-struct Spokes {
+/// Common terms of orientation, ratio and angles of a tetrahedron: the edges from the first vertex and their products.
+pub(crate) struct Spokes<'a> {
+    corners: [&'a Point3; 4],
     edges: [Vec3; 3],
     /// Of the second and third edge, the third and first, the first and second.
     crossed: [Vec3; 3],
-    volume: f64,
+    /// As [`volume6`].
+    pub(crate) volume: f64,
 }
 
-impl Spokes {
+impl<'a> Spokes<'a> {
     #[inline]
-    fn new([a, b, c, d]: [&Point3; 4]) -> Self {
+    pub(crate) fn new(corners: [&'a Point3; 4]) -> Self {
+        let [a, b, c, d] = corners;
         let (u, v, w) = (b - a, c - a, d - a);
         let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
-        Self { edges: [u, v, w], crossed: [vw, wu, uv], volume: uv.dot(&w) }
+        Self { corners, edges: [u, v, w], crossed: [vw, wu, uv], volume: uv.dot(&w) }
+    }
+
+    /// True if the tetrahedron is positive by the exact predicate.
+    #[inline]
+    pub(crate) fn is_positive(&self) -> bool {
+        let [u, v, w] = self.edges.map(|edge| edge.abs());
+        let largest = |i: usize| u[i].max(v[i]).max(w[i]);
+        let [a, b, c, d] = self.corners;
+        self.volume > ORIENT3D_BOUND * largest(0) * largest(1) * largest(2) || orient3d(a, b, c, d) > 0.0
     }
 
     #[inline]
@@ -117,13 +130,13 @@ impl CotangentRange {
 
     /// As [`Self::include`], fast if few tetrahedra widen the range: comparing squares, without roots, rejects most.
     #[inline]
-    fn include_if_wider(&mut self, corners: [&Point3; 4], spokes: &Spokes) {
+    fn include_if_wider(&mut self, spokes: &Spokes) {
         let ([u, v, w], [vw, wu, uv]) = (&spokes.edges, &spokes.crossed);
         let away = -(vw + wu + uv);
         let volume = spokes.volume;
         // Faces at the edges of `u`, `v`, `w` and of the three others.
         let adjacent = [wu.dot(uv), vw.dot(uv), vw.dot(wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)].map(|x| -x);
-        let [_, b, c, d] = corners;
+        let [_, b, c, d] = spokes.corners;
         let squares = [*u, *v, *w, c - b, d - b, d - c].map(|e| e.norm_squared() * (volume * volume));
         let square = |x: f64| x * x.abs();
         let (low, high) = (
@@ -135,7 +148,7 @@ impl CotangentRange {
             x > low * opposite && x < high * opposite
         };
         if !adjacent.iter().zip(&squares).all(within) {
-            self.include(corners);
+            self.include(spokes.corners);
         }
     }
 
@@ -197,7 +210,7 @@ impl TetQuality {
         let mut ratios = Vec::with_capacity(tets.len());
         let mut sum = QualitySum::default();
         for t in tets {
-            ratios.push(sum.include(t.map(|v| &mesh.points[v as usize])));
+            ratios.push(sum.include(&Spokes::new(t.map(|v| &mesh.points[v as usize]))));
         }
         Self { percentile_1: percentile(&mut ratios, 0.01), ..sum.quality() }
     }
@@ -228,8 +241,7 @@ impl Default for QualitySum {
 impl QualitySum {
     /// Adds a tetrahedron. Returns its radius ratio.
     #[inline]
-    pub fn include(&mut self, p: [&Point3; 4]) -> f64 {
-        let spokes = Spokes::new(p);
+    pub(crate) fn include(&mut self, spokes: &Spokes) -> f64 {
         let q = spokes.radius_ratio();
         // The fine bin lies in the coarse one despite rounding.
         let coarse = ((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1) * PER_BIN;
@@ -237,7 +249,7 @@ impl QualitySum {
         self.bins[fine] += 1;
         self.sum += q;
         self.min = self.min.min(q);
-        self.dihedral.include_if_wider(p, &spokes);
+        self.dihedral.include_if_wider(spokes);
         q
     }
 

@@ -115,8 +115,7 @@ impl Check<'_> {
         let boundary = Boundary::new(&mesh.points, &faces);
         counts.boundary_faces = faces.len();
         counts.boundary_components = boundary.surfaces().all.len();
-        lines.push(boundary.edges_closed());
-        lines.push(boundary.single_fans());
+        lines.extend(boundary.manifold_lines());
         let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
         let (line, intersections) = boundary.self_intersections(!fails(&lines, Line::BoundaryEdges));
         lines.push(line);

@@ -170,6 +170,7 @@ impl Bvh {
     }
 
     /// Replaces a pair of nodes by pairs with the children of the larger one. Returns false if both are leaves.
+    #[inline]
     #[allow(clippy::unused_self)]
     fn descend(&self, i: u32, a: &BvhNode, j: u32, b: &BvhNode, pending: &mut Vec<(u32, u32)>) -> bool {
         if a.count > 0 && b.count > 0 {
@@ -183,6 +184,7 @@ impl Bvh {
         true
     }
 
+    #[inline]
     fn pair(&self, m: usize, n: usize, found: &mut impl FnMut(u32, u32)) {
         if self.boxes[m].overlaps(&self.boxes[n]) {
             let (a, b) = (self.items[m], self.items[n]);
@@ -216,14 +218,15 @@ fn arrange(boxes: &mut [Aabb], from: &[u32]) {
 /// Box indices sorted by the Hilbert keys of their centres; empty boxes, without a centre, come first.
 fn along_hilbert_curve(boxes: &[Aabb]) -> Vec<u32> {
     let is_full = |b: &Aabb| b.min.x <= b.max.x;
-    let mut order: Vec<(u64, u32)> = Vec::with_capacity(boxes.len());
-    order.extend((0..).zip(boxes).filter(|(_, b)| !is_full(b)).map(|(i, _)| (0, i)));
+    // The index breaks ties.
+    let packed = |key: u64, i: u32| u128::from(key) << 32 | u128::from(i);
+    let mut order: Vec<u128> = Vec::with_capacity(boxes.len());
+    order.extend((0..).zip(boxes).filter(|(_, b)| !is_full(b)).map(|(i, _)| packed(0, i)));
     let full = (0..).zip(boxes).filter(|(_, b)| is_full(b));
     let centres = full.clone().map(|(_, b)| Point3::from(b.doubled_centre()));
-    order.extend(hilbert_keys(centres).zip(full.map(|(i, _)| i)));
-    // The index breaks ties.
+    order.extend(hilbert_keys(centres).zip(full).map(|(key, (i, _))| packed(key, i)));
     order.sort_unstable();
-    order.into_iter().map(|(_, i)| i).collect()
+    order.into_iter().map(|entry| entry as u32).collect()
 }
 
 #[cfg(test)]

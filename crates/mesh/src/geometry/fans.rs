@@ -14,67 +14,134 @@ const ABSOLUTE: f64 = 1e-280;
 /// Maximum triangles at one vertex; larger fans are left to other tests.
 const MOST: usize = 16;
 
-/// True for vertices whose triangles provably share only the vertex and the edges between consecutive ones. None of
-/// these triangles is degenerate.
-pub(super) fn proved_fans(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<bool> {
-    let mut offsets = vec![0_u32; points.len() + 1];
-    for &v in triangles.iter().flatten() {
-        offsets[v as usize + 1] += 1;
-    }
-    for i in 0..points.len() {
-        offsets[i + 1] += offsets[i];
-    }
-    let mut around = vec![[0_u32; 2]; 3 * triangles.len()];
-    for &[a, b, c] in triangles {
-        for (v, ends) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-            let slot = &mut offsets[v as usize];
-            around[*slot as usize] = ends;
-            *slot += 1;
-        }
-    }
-    // Filling moved each offset to the start of the next vertex.
-    let mut start = 0;
-    let proved = |(v, &end): (usize, &u32)| {
-        let fan = &around[start..end as usize];
-        start = end as usize;
-        is_closed(fan) && turns_once(points, &points[v], fan)
-    };
-    offsets[..points.len()].iter().enumerate().map(proved).collect()
+/// Triangles around the vertices of a surface.
+pub(crate) struct Fans {
+    /// Corners, `3 · triangle + i`, grouped by vertex; the corners of vertex `v` end at `ends[v]`.
+    corners: Vec<u32>,
+    ends: Vec<u32>,
+    /// True for vertices whose triangles provably share only the vertex and the edges between consecutive ones. None of
+    /// these triangles is degenerate.
+    pub(super) proved: Vec<bool>,
+    /// True if every edge is provably in two triangles with opposite directions, and the triangles of each vertex form
+    /// one fan.
+    pub is_manifold: bool,
 }
 
-/// True if each end of a triangle is the start of exactly one other, and vice versa.
-fn is_closed(fan: &[[u32; 2]]) -> bool {
+impl Fans {
+    /// Examines the vertices one by one.
+    pub fn of(points: &[Point3], triangles: &[[u32; 3]]) -> Self {
+        let vertices = triangles.as_flattened();
+        let mut ends = vec![0_u32; points.len() + 1];
+        for &v in vertices {
+            ends[v as usize + 1] += 1;
+        }
+        for i in 0..points.len() {
+            ends[i + 1] += ends[i];
+        }
+        let mut corners = vec![0_u32; vertices.len()];
+        for (corner, &v) in (0..).zip(vertices) {
+            let slot = &mut ends[v as usize];
+            corners[*slot as usize] = corner;
+            *slot += 1;
+        }
+        // Filling moved each offset to the start of the next vertex.
+        let mut fans = Self { corners, ends, proved: vec![false; points.len()], is_manifold: true };
+        let mut fan = Vec::new();
+        for (v, p) in points.iter().enumerate() {
+            let corners = fans.at(v);
+            if !corners.is_empty() {
+                fan.clear();
+                fan.extend(corners.iter().map(|&corner| neighbors(triangles, corner)));
+                let is_closed = sort_around(&mut fan);
+                fans.proved[v] = is_closed && turns_once(points, p, &fan);
+                fans.is_manifold &= fans.proved[v] || (is_closed && is_simple(v as u32, &fan));
+            }
+        }
+        fans
+    }
+
+    fn at(&self, v: usize) -> &[u32] {
+        let start = if v == 0 { 0 } else { self.ends[v - 1] };
+        &self.corners[start as usize..self.ends[v] as usize]
+    }
+
+    /// Partition of the triangles into groups with a common proved vertex, and single ones. Returns the triangles group
+    /// by group, and the ends of the groups.
+    pub(super) fn groups(&self) -> (Vec<u32>, Vec<u32>) {
+        let count = self.corners.len() / 3;
+        let mut is_taken = vec![false; count];
+        let (mut triangles, mut ends) = (Vec::with_capacity(count), Vec::with_capacity(count / 3));
+        for (v, _) in self.proved.iter().enumerate().filter(|(_, proved)| **proved) {
+            let around = self.at(v).iter().map(|corner| corner / 3);
+            triangles.extend(around.filter(|&t| !std::mem::replace(&mut is_taken[t as usize], true)));
+            ends.push(triangles.len() as u32);
+        }
+        for (t, _) in (0..).zip(is_taken).filter(|(_, taken)| !taken) {
+            triangles.push(t);
+            ends.push(triangles.len() as u32);
+        }
+        ends.dedup();
+        (triangles, ends)
+    }
+}
+
+/// The two other vertices of a corner's triangle, in its direction.
+fn neighbors(triangles: &[[u32; 3]], corner: u32) -> [u32; 2] {
+    let [a, b, c] = triangles[corner as usize / 3];
+    [[b, c], [c, a], [a, b]][corner as usize % 3]
+}
+
+/// Sorts the triangles of a vertex so that each starts at the end of the previous one, the first at the end of the last.
+/// Returns false if this fails, and for very small and very large fans.
+fn sort_around(fan: &mut [[u32; 2]]) -> bool {
     if fan.len() < 3 || fan.len() > MOST {
         return false;
     }
-    let once =
-        |from: usize, to: usize| fan.iter().all(|t| fan.iter().map(|u| u32::from(t[from] == u[to])).sum::<u32>() == 1);
-    once(1, 0) && once(0, 1)
+    for i in 1..fan.len() {
+        let end = fan[i - 1][1];
+        let Some(next) = fan[i..].iter().position(|t| t[0] == end) else { return false };
+        fan.swap(i, i + next);
+    }
+    fan[fan.len() - 1][1] == fan[0][0]
 }
 
+/// True if a sorted fan has each edge once, and its triangles have three vertices each.
+fn is_simple(v: u32, fan: &[[u32; 2]]) -> bool {
+    fan.iter().enumerate().all(|(i, t)| t[0] != v && fan[..i].iter().all(|u| u[0] != t[0]))
+}
+
+/// True if the images of a sorted fan are all positive and turn once around the vertex.
 fn turns_once(points: &[Point3], p: &Point3, fan: &[[u32; 2]]) -> bool {
-    let spokes = |t: &[u32; 2]| t.map(|v| points[v as usize] - p);
-    let sum: Vec3 = fan.iter().map(spokes).map(|[a, b]| a.cross(&b)).sum();
+    let mut spokes = [Vec3::zeros(); MOST];
+    for (spoke, t) in spokes.iter_mut().zip(fan) {
+        *spoke = points[t[0] as usize] - p;
+    }
+    let spokes = &spokes[..fan.len()];
+    let last = spokes[spokes.len() - 1];
+    let (mut sum, mut a) = (Vec3::zeros(), &last);
+    for b in spokes {
+        sum += a.cross(b);
+        a = b;
+    }
     let Some(normal) = sum.try_normalize(0.0) else { return false };
     let mut axis = Vec3::zeros();
     axis[normal.iamin()] = 1.0;
     // Any two vectors are valid; these make the images as large as the triangles.
     let e = normal.cross(&axis);
     let f = normal.cross(&e);
+    let image = |d: &Vec3| (d.dot(&e), d.dot(&f), d.x.abs() + d.y.abs() + d.z.abs());
     let mut turns = 0;
-    for t in fan {
-        let image = |d: Vec3| (d.dot(&e), d.dot(&f), d.x.abs() + d.y.abs() + d.z.abs());
-        let [(ax, ay, a), (bx, by, b)] = spokes(t).map(image);
+    let (mut ax, mut ay, mut a) = image(&last);
+    for d in spokes {
+        let (bx, by, b) = image(d);
         let cross = ax * by - ay * bx;
         // Formulated so that NaN fails.
-        let certain = cross > RELATIVE * (a * b) + ABSOLUTE
-            && cross < f64::MAX
-            && ay.abs() > RELATIVE * a + ABSOLUTE
-            && by.abs() > RELATIVE * b + ABSOLUTE;
+        let certain = cross > RELATIVE * (a * b) + ABSOLUTE && cross < f64::MAX && by.abs() > RELATIVE * b + ABSOLUTE;
         if !certain {
             return false;
         }
         turns += u32::from(ay < 0.0 && by > 0.0);
+        (ax, ay, a) = (bx, by, b);
     }
     turns == 1
 }
@@ -93,7 +160,7 @@ mod tests {
             points.extend(rim.iter().map(|&(x, y, z)| Point3::new(x, y, z)));
             let n = rim.len() as u32;
             let triangles: Vec<[u32; 3]> = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
-            if proved_fans(&points, &triangles)[0] {
+            if Fans::of(&points, &triangles).proved[0] {
                 for i in 0..triangles.len() {
                     for j in i + 1..triangles.len() {
                         prop_assert_eq!(classify(&points, triangles[i], triangles[j]), Contact::Neighbours);
@@ -115,9 +182,9 @@ mod tests {
     #[test]
     fn a_fan_that_turns_once_is_proved_and_one_that_turns_twice_or_is_open_is_not() {
         let (points, triangles) = star(1.0, 6);
-        assert!(proved_fans(&points, &triangles)[0]);
-        assert!(!proved_fans(&points, &triangles[..5])[0]);
+        assert!(Fans::of(&points, &triangles).proved[0]);
+        assert!(!Fans::of(&points, &triangles[..5]).proved[0]);
         let (points, triangles) = star(2.0, 12);
-        assert!(!proved_fans(&points, &triangles)[0]);
+        assert!(!Fans::of(&points, &triangles).proved[0]);
     }
 }

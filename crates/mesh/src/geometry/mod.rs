@@ -27,10 +27,12 @@ pub use bvh::Bvh;
 pub use convex::minimise_convex;
 pub use disjoint_sets::DisjointSets;
 pub use distance::{SegmentPair, TubePair, point_segment, point_triangle, point_tube, segment_segment, tube_tube};
+pub(crate) use fans::Fans;
 pub use normal::unit_normal;
 pub use place::place_key;
 pub use ray::crossing;
 pub use total::Total;
+pub(crate) use tri_tri::contacts_with;
 pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
 pub use tube::{Section, Tube};
 

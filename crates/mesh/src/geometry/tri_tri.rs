@@ -5,7 +5,7 @@
 //! triangle. Such a pair of features is a *hit*. Exact predicates find the hits, and their number tells the kind of
 //! intersection: none, a point, a segment, or an area.
 
-use super::fans::proved_fans;
+use super::fans::Fans;
 use super::predicates::{ORIENT3D_BOUND, collinear, orient2d, orient3d};
 use super::{Aabb, Bvh, Point3};
 use rayon::prelude::*;
@@ -300,28 +300,41 @@ pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32
 
 /// As `self_intersections`, with the kind of each.
 pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, Improper)> {
+    contacts_with(points, triangles, &Fans::of(points, triangles))
+}
+
+/// As `self_contacts`, with the known fans of the triangles.
+pub(crate) fn contacts_with(points: &[Point3], triangles: &[[u32; 3]], fans: &Fans) -> Vec<(u32, u32, Improper)> {
     let mut found: Vec<(u32, u32, Improper)> = Vec::new();
+    // On a smooth surface nearly all vertices are proved, and neighbours there need no test: the tree has one box for the
+    // triangles of such a vertex. Boxes are in the order of `grouped`.
+    let (grouped, ends) = fans.groups();
+    let proved_or_none = |v: u32| if fans.proved[v as usize] { v } else { u32::MAX };
     let mut boxes = Vec::with_capacity(triangles.len());
-    // On a smooth surface nearly all vertices are proved, and neighbours there need no test.
-    let proved = proved_fans(points, triangles);
-    let proved_or_none = |v: u32| if proved[v as usize] { v } else { u32::MAX };
-    let known: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(proved_or_none)).collect();
-    for (i, t) in triangles.iter().enumerate() {
-        let [a, b, c] = t.map(|v| &points[v as usize]);
-        if known[i] == [u32::MAX; 3] && collinear(a, b, c) {
-            found.push((i as u32, i as u32, Improper::Degenerate));
-            boxes.push(Aabb::EMPTY);
+    for &t in &grouped {
+        let known = triangles[t as usize].map(proved_or_none);
+        let [a, b, c] = triangles[t as usize].map(|v| &points[v as usize]);
+        if known == [u32::MAX; 3] && collinear(a, b, c) {
+            found.push((t, t, Improper::Degenerate));
+            boxes.push((Aabb::EMPTY, known, t));
         } else {
-            boxes.push(Aabb::of_points([a, b, c]));
+            boxes.push((Aabb::of_points([a, b, c]), known, t));
         }
     }
+    let start = |group: u32| if group == 0 { 0 } else { ends[group as usize - 1] as usize };
+    let group = |group: u32| &boxes[start(group)..ends[group as usize] as usize];
+    let hull = |i: u32| group(i).iter().fold(Aabb::EMPTY, |sum, (aabb, ..)| sum.union(aabb));
+    let hulls: Vec<Aabb> = (0..ends.len() as u32).map(hull).collect();
     let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
-    Bvh::new(&boxes).self_pairs(|i, j| {
-        if have_common(known[i as usize], known[j as usize]) {
-            return;
+    Bvh::new(&hulls).self_pairs(|p, q| {
+        for (box_i, of_i, i) in group(p).iter().filter(|(aabb, ..)| aabb.overlaps(&hulls[q as usize])) {
+            for (_, of_j, j) in group(q).iter().filter(|(aabb, ..)| aabb.overlaps(box_i)) {
+                if !have_common(*of_i, *of_j) {
+                    batch.push((*i.min(j), *i.max(j)));
+                }
+            }
         }
-        batch.push((i, j));
-        if batch.len() == BATCH {
+        if batch.len() >= BATCH {
             test_pairs(points, triangles, &batch, &mut found);
             batch.clear();
         }

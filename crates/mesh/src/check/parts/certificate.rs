@@ -1,6 +1,6 @@
 //! What is known of one part once it has been checked alone.
 
-use super::sums::face_sum;
+use super::sums::{face_sum, point_sum};
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
 use crate::TetMesh;
 use crate::adjacency::{NONE, TetAdjacency, face_vertices};
@@ -13,8 +13,9 @@ use crate::check::surfaces::{Surface, Surfaces};
 use crate::face_key;
 use crate::geometry::Aabb;
 use crate::geometry::DisjointSets;
-use crate::geometry::predicates::{in_exact_range, orient3d};
-use crate::quality::{QualitySum, volume6};
+use crate::geometry::predicates::in_exact_range;
+use crate::quality::{QualitySum, Spokes};
+use std::iter;
 
 /// Pairs of faces that meet improperly which a certificate keeps.
 const KEPT_INTERSECTIONS: usize = 100;
@@ -103,9 +104,10 @@ impl Certificate {
                 used[v as usize] = true;
                 &mesh.points[v as usize]
             });
-            sound &= orient3d(p[0], p[1], p[2], p[3]) > 0.0;
-            volume += volume6(p[0], p[1], p[2], p[3]);
-            quality.include(p);
+            let spokes = Spokes::new(p);
+            sound &= spokes.is_positive();
+            volume += spokes.volume;
+            quality.include(&spokes);
         }
         self.volume = volume / 6.0;
         self.quality = quality.piece();
@@ -145,13 +147,14 @@ impl Certificate {
         let (owners, labels) = owners(part, faces);
         let boundary = Boundary::new(points, faces);
         let (contacts, intersections) = boundary.self_intersections(false);
-        self.take([labels, boundary.edges_closed(), boundary.single_fans(), contacts]);
+        self.take(iter::once(labels).chain(boundary.manifold_lines()).chain([contacts]));
         self.intersections = intersections;
         self.intersections.truncate(KEPT_INTERSECTIONS);
         let box_of = Aabb::of_points(faces.as_flattened().iter().map(|&v| &points[v as usize]));
         self.bounds = [box_of.min.coords.into(), box_of.max.coords.into()];
+        let sums: Vec<u64> = points.iter().map(point_sum).collect();
         for (face, owner) in faces.iter().zip(&owners) {
-            let sum = face_sum(face.map(|v| &points[v as usize]));
+            let sum = face_sum(face.map(|v| sums[v as usize]));
             match *owner {
                 Owner::Joint(j) => self.joints[j as usize].sum = self.joints[j as usize].sum.wrapping_add(sum),
                 Owner::Wall | Owner::Cap(_) => {
@@ -258,9 +261,11 @@ impl Certificate {
 fn neighbors_are_opposite(mesh: &TetMesh, adjacency: &TetAdjacency) -> bool {
     adjacency.neighbors.as_flattened().iter().enumerate().all(|(handle, &neighbor)| {
         let handle = handle as u32;
-        neighbor == NONE
-            || handle > neighbor
-            || !cells::same_turn(face_vertices(&mesh.tets, handle), face_vertices(&mesh.tets, neighbor))
+        neighbor == NONE || handle > neighbor || {
+            let ([a, b, _], [p, q, r]) = (face_vertices(&mesh.tets, handle), face_vertices(&mesh.tets, neighbor));
+            // The vertices are known to be equal.
+            ![[p, q], [q, r], [r, p]].contains(&[a, b])
+        }
     })
 }
 

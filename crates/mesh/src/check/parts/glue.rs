@@ -211,7 +211,7 @@ impl Held {
 pub(super) fn sum_of(points: &[Point3], faces: &[[u32; 3]]) -> Option<u64> {
     let mut sum = 0_u64;
     for face in faces {
-        let [a, b, c] = face.map(|v| points.get(v as usize));
+        let [a, b, c] = face.map(|v| points.get(v as usize).map(sums::point_sum));
         sum = sum.wrapping_add(sums::face_sum([a?, b?, c?]));
     }
     Some(sum)

@@ -2,14 +2,15 @@
 
 use crate::geometry::Point3;
 
-/// Checksum of a triangle, invariant under rotation but not reversal. Sums of checksums do not depend on order.
-pub(super) fn face_sum(corners: [&Point3; 3]) -> u64 {
-    let [a, b, c] = corners.map(point_sum);
+/// Checksum of a triangle from those of its corners, invariant under rotation but not reversal. Sums of checksums do not
+/// depend on order.
+pub(super) fn face_sum([a, b, c]: [u64; 3]) -> u64 {
     let turned = |x: u64, y: u64, z: u64| mix(x ^ mix(y ^ mix(z).rotate_left(17)).rotate_left(29));
     turned(a, b, c).wrapping_add(turned(b, c, a)).wrapping_add(turned(c, a, b))
 }
 
-fn point_sum(p: &Point3) -> u64 {
+/// Checksum of a point.
+pub(super) fn point_sum(p: &Point3) -> u64 {
     p.iter().fold(0x2545_f491_4f6c_dd1d, |sum: u64, x| mix(sum ^ x.to_bits()))
 }
 
