@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+
+from anastomesh._binary import binary
 
 ROOT = Path(__file__).parents[2]
 
@@ -25,6 +28,13 @@ def test_documentation(tmp_path: Path) -> None:
         pattern = re.escape(line).replace(re.escape("..."), ".*")
         assert re.search(f"^{pattern}$", done.stdout, re.M), line
     assert {"vessels.vtu", "vessels.png", "vessels.html"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_tutorial(tmp_path: Path) -> None:
+    env = {**os.environ, "PATH": os.pathsep.join([os.path.dirname(binary()), os.environ["PATH"]]), "ANASTOMESH_REQUIRE_ORACLES": "1"}
+    command = [sys.executable, str(ROOT / "docs/run"), "--check", "--any-times", str(ROOT / "docs/tutorials/surface.md")]
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_links_are_absolute() -> None:

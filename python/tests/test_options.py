@@ -48,9 +48,14 @@ NAMES = [function.__name__ for function, *_ in FUNCTIONS]
 def program() -> dict[str, dict[str, tuple[str, str]]]:
     """Options of all verbs: the default and the description of each."""
     text = subprocess.run([anastomesh.binary(), "man", "--markdown"], capture_output=True, text=True, check=True).stdout
-    row = re.compile(r"^\| `(?:-\w, )?--([a-z0-9-]+)[^`]*` \| (?:`(.*?)`)? ?\| (.*) \|$", re.M)
-    sections = re.split(r"^## ", text, flags=re.M)[1:]
-    return {part.split("\n")[0]: {name: (default, said) for name, default, said in row.findall(part)} for part in sections}
+    row = re.compile(r"^\| `(?:-\w, )?--([a-z0-9-]+)[^`]*` \| (?:`(.*?)`)? ?\| (.*?) \|(?: ([a-z, ]+) \|)?$", re.M)
+    found: dict[str, dict[str, tuple[str, str]]] = {}
+    for section in re.split(r"^## ", text, flags=re.M)[1:]:
+        for name, default, said, verbs in row.findall(section):
+            # Rows of shared options name their verbs.
+            for verb in verbs.split(", ") if verbs else [section.split("\n")[0]]:
+                found.setdefault(verb, {})[name] = (default, said)
+    return found
 
 
 @pytest.mark.parametrize(("function", "verb", "typed", "elsewhere"), FUNCTIONS, ids=NAMES)

@@ -1,5 +1,6 @@
 //! `anastomesh man`: the manual's pages, made from the definition of the command line.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use clap::builder::PossibleValue;
@@ -25,31 +26,59 @@ pub fn run(args: &Args, command: &Command) -> Result<Exit, Failure> {
     Ok(Exit::Fine)
 }
 
-/// A table of options for each verb and heading.
+/// Number of commands from which on an option is listed once, among the shared options.
+const SHARED: usize = 3;
+
+/// Tables of all options by heading: the shared options first, then those of each command.
 fn markdown(command: &Command) -> String {
-    let mut out = String::from(
-        "# Options\n\nMade by `anastomesh man --markdown`. Lengths are in the network's unit unless an option says otherwise.\n",
-    );
-    for verb in command.get_subcommands().filter(|verb| verb.get_name() != "help") {
-        let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
-        // Writing to a string cannot fail.
-        let _ = write!(out, "\n## {}\n\n{about}.\n", verb.get_name());
-        let mut headings: Vec<&str> = Vec::new();
+    let verbs: Vec<&Command> = command.get_subcommands().filter(|verb| verb.get_name() != "help").collect();
+    let mut users: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for verb in &verbs {
         for arg in shown(verb) {
-            let heading = arg.get_help_heading().unwrap_or("");
-            if !headings.contains(&heading) {
-                headings.push(heading);
-            }
-        }
-        for heading in headings {
-            let title = if heading.is_empty() { String::new() } else { format!("\n**{heading}**\n") };
-            let _ = write!(out, "{title}\n| option | default | |\n|---|---|---|\n");
-            for arg in shown(verb).filter(|arg| arg.get_help_heading().unwrap_or("") == heading) {
-                let _ = writeln!(out, "| {} | {} | {} |", name(arg), default(arg), help(arg));
-            }
+            users.entry(row(arg)).or_default().push(verb.get_name());
         }
     }
+    let is_shared = |arg: &&Arg| users[&row(arg)].len() >= SHARED;
+    let mut seen = BTreeSet::new();
+    let shared = verbs.iter().flat_map(|verb| shown(verb)).filter(is_shared).filter(|arg| seen.insert(row(arg)));
+    let mut out = String::from(
+        "# Options\n\nMade by `anastomesh man --markdown`. Lengths are in the network's unit unless an option says otherwise.\n\n\
+         ## Shared options\n\nOptions of three or more commands. The last column names the commands.\n",
+    );
+    let line = |arg: &Arg| format!("{} {} |", row(arg), users[&row(arg)].join(", "));
+    tables(&mut out, &shared.collect::<Vec<_>>(), "| option | default | effect | commands |\n|---|---|---|---|", line);
+    for verb in verbs {
+        let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
+        let (shared, own): (Vec<&Arg>, Vec<&Arg>) = shown(verb).partition(is_shared);
+        // Writing to a string cannot fail.
+        let _ = write!(out, "\n## {}\n\n{about}.\n", verb.get_name());
+        tables(&mut out, &own, "| option | default | effect |\n|---|---|---|", row);
+        let names: Vec<String> = shared.into_iter().map(name).collect();
+        let _ = write!(out, "\n[Shared options](#shared-options): {}\n", names.join(", "));
+    }
     out
+}
+
+/// A table for each heading.
+fn tables(out: &mut String, args: &[&Arg], head: &str, line: impl Fn(&Arg) -> String) {
+    let mut headings: Vec<&str> = Vec::new();
+    for arg in args {
+        let heading = arg.get_help_heading().unwrap_or("");
+        if !headings.contains(&heading) {
+            headings.push(heading);
+        }
+    }
+    for heading in headings {
+        let title = if heading.is_empty() { String::new() } else { format!("\n**{heading}**\n") };
+        let _ = write!(out, "{title}\n{head}\n");
+        for arg in args.iter().filter(|arg| arg.get_help_heading().unwrap_or("") == heading) {
+            let _ = writeln!(out, "{}", line(arg));
+        }
+    }
+}
+
+fn row(arg: &Arg) -> String {
+    format!("| {} | {} | {} |", name(arg), default(arg), help(arg))
 }
 
 fn shown(verb: &Command) -> impl Iterator<Item = &Arg> {
