@@ -161,11 +161,11 @@ fn overlapping_vessels_are_meshed_and_named() {
     let network = shared.join("data/kidney/subtree_989.vtp");
     let folder = folder();
     let said = assert_same_bytes(&network, folder.path(), GATE_NOT_MET);
-    assert!(said.contains("vessels overlap at 55 places (56 pairs of edges;"), "{said}");
-    assert!(said.contains("FAIL the boundary does not meet itself") && said.contains("NOT valid"), "{said}");
+    assert!(said.contains("vessels overlap at 55 places (56 edge pairs,"), "{said}");
+    assert!(said.contains("FAIL the boundary intersects itself at ") && said.contains("NOT valid"), "{said}");
     let checked = run("check", &[&folder.path().join("7.vtu")], &["-v"]);
     assert_code(&checked, GATE_NOT_MET);
-    assert!(stdout(&checked).contains("  ok   every tetrahedron is positive\n"), "{}", stdout(&checked));
+    assert!(stdout(&checked).contains("  ok   every tetrahedron has positive volume\n"), "{}", stdout(&checked));
 }
 
 // ---- Bad input ------------------------------------------------------------------------------------------------------
@@ -215,7 +215,7 @@ fn files_with_nothing_in_them() {
         refuse(name, "", &["the file is empty", "copy it again"]);
         refuse(name, " \n\n", &["the file is empty"]);
     }
-    refuse("comments.swc", "# id type x y z radius parent\n", &["no row with a node", "SWC"]);
+    refuse("comments.swc", "# id type x y z radius parent\n", &["the file has no nodes", "SWC"]);
 }
 
 #[test]
@@ -261,9 +261,9 @@ fn numbers_that_cannot_be_used_in_swc() {
 
 #[test]
 fn networks_without_a_vessel() {
-    refuse("one.swc", "1 1 0 0 0 1 -1\n", &["1 node(s)", "no vessel to mesh", "it takes two nodes"]);
-    refuse("apart.swc", "1 1 0 0 0 1 -1\n2 1 0 0 9 1 -1\n", &["2 node(s)", "no vessel to mesh"]);
-    refuse("point.swc", "1 1 0 0 0 1 -1\n2 1 0 0 0 1 1\n", &["no vessel to mesh"]);
+    refuse("one.swc", "1 1 0 0 0 1 -1\n", &["1 node,", "no vessel", "two nodes"]);
+    refuse("apart.swc", "1 1 0 0 0 1 -1\n2 1 0 0 9 1 -1\n", &["2 nodes,", "no vessel"]);
+    refuse("point.swc", "1 1 0 0 0 1 -1\n2 1 0 0 0 1 1\n", &["no vessel"]);
     refuse("one.vtp", vtp("0 0 0", "1", "", ""), &["no lines"]);
 }
 
@@ -431,7 +431,8 @@ fn blocks_that_fail_are_left_out_on_request() {
     assert_code(&checked, GATE_NOT_MET);
     let said = stdout(&checked);
     assert!(
-        said.contains("FAIL every terminal has its cap") && said.contains("ok   every tetrahedron is positive"),
+        said.contains("FAIL terminals and caps do not match at ")
+            && said.contains("ok   every tetrahedron has positive volume"),
         "{said}"
     );
 }
@@ -445,7 +446,7 @@ fn the_root_of_an_swc_file_is_the_inlet() {
     let out = folder.path().join("tree.vtu");
     let made = mesh(&network, &out, &[]);
     assert_code(&made, FINE);
-    assert!(stderr(&made).contains("inlet: node 7 at 0 0 0, radius 1 (the root in the file)"), "{}", stderr(&made));
+    assert!(stderr(&made).contains("inlet: node 7 at 0 0 0, radius 1 (root in the file)"), "{}", stderr(&made));
     let patches = read_mesh(&out).expect("a mesh").volume.patches;
     let inlet = patches.iter().find(|p| p.name == "inlet").expect("an inlet");
     assert_eq!(inlet.cap.map(|c| c.node), Some(0));
