@@ -174,7 +174,7 @@ fn graphs_say_where() {
         NetworkFormat::Json,
         "\"target\": 3",
         "\"target\": 7",
-        "edge 2 of the list (from 0): an edge ends at node '7'",
+        "edge 2 of the list (from 0): an edge ends at the unknown node '7'",
     );
     says(JSON, NetworkFormat::Json, "\"target\": 3", "\"target\": null", "edge 2 of the list (from 0): 'target'");
     says(JSON, NetworkFormat::Json, "\"nodes\"", "\"knots\"", "no list 'nodes'");
