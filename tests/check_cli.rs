@@ -78,5 +78,5 @@ fn check_finds_what_is_broken() {
     let mut mislabelled = sound.volume.clone();
     let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
     mislabelled.boundary_patch[cap] = 3;
-    fails(&mislabelled, "1 cap is not a disc");
+    fails(&mislabelled, "2 caps are not discs");
 }

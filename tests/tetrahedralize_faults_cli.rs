@@ -67,7 +67,7 @@ fn triangles_and_points_that_make_no_sense() {
     // Edge 0 1 is split on one side only in name: a degenerate triangle fills the gap.
     flat.triangles.push([0, 8, 1]);
     flat.triangles.push([0, 1, 8]);
-    refuse("a.off", off(&flat), &["--plc"], &["no area", "12"]);
+    refuse("a.off", off(&flat), &["--plc"], &["without area", "12"]);
     let mut twice = cube();
     twice.points.extend(corners(0.0, 1.0));
     let n = twice.triangles.len();
@@ -100,7 +100,7 @@ fn facets_that_make_no_sense() {
     refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 1 3 10"), &[], &["facet 1", "no area"]);
     refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 4 9 10"), &[], &["facet 1", "9"]);
     let half = rooms(false).replace(" 7 0.01", " 7.5 0.01");
-    refuse("a.poly", half, &[], &["region 0", "7.5", "integers"]);
+    refuse("a.poly", half, &[], &["region 0", "7.5", "give an integer"]);
     // Without its lid the box encloses nothing.
     refuse("a.smesh", cube_smesh().replace("6 1\n4 1 3 4 2 10\n", "5 1\n"), &[], &["enclose"]);
 }
@@ -242,10 +242,13 @@ fn facets_outside_are_left_out_with_a_note() {
     assert_code(&made, FINE);
     let said = stderr(&made);
     assert!(
-        said.contains("4 triangles of the facets 7, 8 (counted from 1)") && said.contains("1 segments 18-19"),
+        said.contains(
+            "omitted: 4 triangles of the facets outside the filled region, or in a hole (--strict refuses this): 7, 8 ("
+        ) && said.contains("omitted: 1 segment outside")
+            && said.contains(": 18-19 ("),
         "{said}"
     );
-    assert!(said.contains("no tetrahedron has: 8"), "{said}");
+    assert!(said.contains("unused: 8 input points without tetrahedra"), "{said}");
     let quiet = fill(&input, &out, &["--quiet"]);
     assert!(quiet.stderr.is_empty());
 }
@@ -253,7 +256,7 @@ fn facets_outside_are_left_out_with_a_note() {
 #[test]
 fn strict_refuses_what_would_be_left_out() {
     let all = cube_with_things_outside();
-    let parts = ["4 triangles lie outside", "filled: 7, 8 (", "their facets", "count from 1", "--strict"];
+    let parts = ["4 triangles lie outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");
