@@ -54,7 +54,7 @@ fn layers_go_all_along_the_wall_and_caps_stay_flat() {
     sizes(&["--layers", "2", "--stretch", "4", "--core", "1.5"]);
     for (options, words) in [
         (&["--layers", "3", "--layer-thickness", "1"][..], &["0.001 to 0.8"][..]),
-        (&["--layers", "3", "--joint", "woven"], &["discs"]),
+        (&["--layers", "3", "--joint", "woven"], &["joint style disc"]),
         (&["--core", "0"], &["core", "0.5"]),
     ] {
         assert_says(&mesh(&fixture("tree_30.vtp"), &out, options), USAGE, words);
@@ -232,7 +232,7 @@ fn a_truncated_vtp_at_every_length() {
 fn text_of_another_kind() {
     refuse("prose.swc", "It was the best of times.\n", &["line 1", "columns"]);
     refuse("prose.swc", "It was the best of times, it was the worst.\n", &["line 1", "'It'", "not a number"]);
-    refuse("table.swc", "# c\n1 1 0 0 0 1 -1\n2,1,0,0,0,1,1\n", &["line 3", "columns"]);
+    refuse("table.swc", "# c\n1 1 0 0 0 1 -1\n2,1,0,0,0,1,1\n", &["line 3", "1 column,"]);
     refuse("prose.vtp", "It was the best of times.\n", &["XML", ".vtp"]);
     refuse("page.vtp", "<html><body>404</body></html>", &["<html>", "VTKFile"]);
     refuse("noise.swc", [0xff, 0xfe, 0x00, 0x9c, b'\n', 0x80], &["line 1"]);
@@ -251,7 +251,7 @@ fn numbers_that_cannot_be_used_in_swc() {
         refuse("bad.swc", with(&format!("2 1 0 0 10 {bad} 1")), &["line 3", "node 2", "radius"]);
     }
     for bad in ["0", "0.0", "-0.0", "-1.5"] {
-        refuse("bad.swc", with(&format!("2 1 0 0 10 {bad} 1")), &["line 3", "node 2", "above zero", "give it"]);
+        refuse("bad.swc", with(&format!("2 1 0 0 10 {bad} 1")), &["line 3", "node 2", "positive", "give the radius"]);
     }
     refuse("bad.swc", with("2 1 0 0 ten 1 1"), &["line 3", "the z is 'ten'"]);
     refuse("bad.swc", with("2 1 0 0 10 1 2"), &["line 3", "node 2 is its own parent", "-1"]);
@@ -299,7 +299,7 @@ fn numbers_that_cannot_be_used_in_vtp() {
     }
     for bad in ["0", "-2", "nan", "inf"] {
         let radii = format!("1 1 {bad}");
-        refuse("bad.vtp", vtp(POINTS, &radii, "0 1 2", "3"), &["node 2", "radius", "above zero", "correct the file"]);
+        refuse("bad.vtp", vtp(POINTS, &radii, "0 1 2", "3"), &["node 2", "radius", "positive", "correct the file"]);
     }
     refuse("bad.vtp", vtp(POINTS, "1 x 1", "0 1 2", "3"), &["value 1 of array 'Radius'", "'x'"]);
     refuse("bad.vtp", vtp(POINTS, "1 1", "0 1 2", "3"), &["'Radius'", "2 values", "3"]);

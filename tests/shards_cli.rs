@@ -137,7 +137,7 @@ fn a_shard_that_is_killed_at_any_moment_goes_on() {
         }
     }
     assert!(killed >= 6, "{killed} kills");
-    assert_says(&net.run("a.vtu", &[]), BAD_INPUT, &["shard 2/2 has not been made to the end", "--make-missing"]);
+    assert_says(&net.run("a.vtu", &[]), BAD_INPUT, &["shard 2/2 is not finished", "--make-missing"]);
     assert_code(&net.shard("2/2"), FINE);
     net.assert_joins(&whole, &[]);
 }
@@ -150,7 +150,7 @@ fn a_missing_shard_is_named_and_made_on_request() {
         assert_code(&net.shard(shard), FINE);
     }
     let refused = net.run("joined.vtu", &[]);
-    assert_says(&refused, BAD_INPUT, &["shards 2/4, 4/4 have not been made to the end", "--make-missing"]);
+    assert_says(&refused, BAD_INPUT, &["shards 2/4, 4/4 are not finished", "--make-missing"]);
     assert!(!net.path("joined.vtu").exists(), "nothing is merged");
     net.assert_joins(&whole, &["--make-missing"]);
     assert_code(&net.shard("2/4"), FINE);

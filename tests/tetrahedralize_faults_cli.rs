@@ -77,7 +77,7 @@ fn triangles_and_points_that_make_no_sense() {
     refuse("a.off", off(&twice), &[], &["triangles"]);
     let mut coincident = cube();
     coincident.points.push(Point3::origin());
-    refuse("a.off", off(&coincident), &[], &["repeat", "--repair"]);
+    refuse("a.off", off(&coincident), &[], &["1 duplicate point:", "--repair"]);
     for bad in ["nan", "inf", "-Infinity"] {
         refuse("a.off", off(&cube()).replacen("1.0", bad, 1), &[], &["finite", "line"]);
     }
