@@ -154,7 +154,7 @@ fn a_missing_shard_is_named_and_made_on_request() {
     assert!(!net.path("joined.vtu").exists(), "nothing is merged");
     net.assert_joins(&whole, &["--make-missing"]);
     assert_code(&net.shard("2/4"), FINE);
-    assert_says(&net.run("joined.vtu", &[]), BAD_INPUT, &["shard 4/4 has"]);
+    assert_says(&net.run("joined.vtu", &[]), BAD_INPUT, &["shard 4/4 is not finished"]);
 }
 
 #[test]
