@@ -24,7 +24,7 @@ pub struct Args {
     /// Seed of the random numbers; equal seeds give equal networks
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Mean radius of the terminals, in um (default: 10.08, as in a rat kidney; 4 with --capillaries)
+    /// Mean radius of the terminals, in um (default: 10.08, as in a rat kidney; 4 with capillaries)
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     terminal_radius: Option<f64>,
     /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for the kidney, as measured; 3 for the ellipsoid)
