@@ -99,7 +99,7 @@ fn a_complex_as_arrays_has_markers_and_bounded_regions() {
     for name in ["markers.npy", "regions.npy"] {
         fs::remove_file(input.join(name)).expect("a file");
     }
-    assert_says(&fill(&input, &input, &[]), USAGE, &["is the input and would be replaced"]);
+    assert_says(&fill(&input, &input, &[]), USAGE, &["is the input and would be overwritten"]);
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn arrays_at_fault_are_named() {
     let (input, out) = (cube(folder.path()), folder.path().join("out.vtu"));
     save(&input, "triangles.npy", "<i4", "(2, 3)", &ints(&[0, 1, 2, 0, 8, 2]));
     let said = fill(&input, &out, &[]);
-    assert_message(&said, &input, &["triangles.npy: row 1 names 8, but points.npy has 8 rows, the first is 0"]);
+    assert_message(&said, &input, &["triangles.npy: row 1 refers to 8, but points.npy has 8 rows, numbered from 0"]);
     assert_code(&said, BAD_INPUT);
     save(&input, "triangles.npy", "<i4", "(200000000000, 3)", &ints(&[0, 1, 2]));
     assert_message(&fill(&input, &out, &[]), &input, &["announce 2400000000000 bytes, it has 12"]);
@@ -136,7 +136,7 @@ fn arrays_at_fault_are_named() {
     assert_message(&fill(&input, &out, &[]), &input, &["points.npy: is missing"]);
     let nowhere = folder.path().join("nowhere.npyd");
     assert_message(&fill(&nowhere, &out, &[]), &nowhere, &["cannot be read: No such file"]);
-    assert_says(&fill(Path::new("-"), &out, &["--from", "npyd"]), USAGE, &["name its path"]);
+    assert_says(&fill(Path::new("-"), &out, &["--from", "npyd"]), USAGE, &["give its path"]);
     assert!(!out.exists());
 }
 

@@ -63,20 +63,20 @@ fn check_finds_what_is_broken() {
             let output = run("check", &[&path], &[]);
             assert_code(&output, GATE_NOT_MET);
             let said = stdout(&output);
-            assert!(said.contains(&format!("FAIL {statement}: ")) && said.ends_with("NOT valid\n"), "{said}");
+            assert!(said.contains(&format!("FAIL {statement}\n")) && said.ends_with("NOT valid\n"), "{said}");
             let verdict = &json(&run("check", &[&path], &["--json"]))["verdict"];
             assert_eq!(verdict, "invalid");
         }
     };
     let mut inverted = sound.volume.clone();
     inverted.mesh.tets[100].swap(0, 1);
-    fails(&inverted, "every tetrahedron is positive");
+    fails(&inverted, "1 tetrahedron is inverted or flat");
     let mut holed = sound.volume.clone();
     holed.mesh.tets.remove(100);
     holed.tet_block.remove(100);
-    fails(&holed, "the labelled triangles are the boundary");
+    fails(&holed, "the labelled triangles differ from the boundary faces at 4 places");
     let mut mislabelled = sound.volume.clone();
     let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
     mislabelled.boundary_patch[cap] = 3;
-    fails(&mislabelled, "every cap is one disc");
+    fails(&mislabelled, "2 caps are not discs");
 }

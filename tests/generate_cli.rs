@@ -73,7 +73,7 @@ fn what_cannot_be_grown_is_a_usage_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("net.vtp");
     for (arguments, says) in [
-        (&["--terminals", "1"][..], "a tree has 2 to"),
+        (&["--terminals", "1"][..], "1 terminals: give 2 to"),
         (&["--terminals", "-5"], "invalid value"),
         (&["--terminals", "100", "--size", "100"], "do not fit"),
         (&["--terminals", "100", "--size", "nan"], "size NaN"),

@@ -106,7 +106,7 @@ fn a_work_directory_belongs_to_one_network_and_its_options() {
     assert_code(&run(&tree, &path("a.vtu"), &["--work-dir", &work]), FINE);
     let before = fs::read(path("a.vtu")).expect("a mesh");
     let other = run(&tree, &path("a.vtu"), &["--work-dir", &work, "--rho", "4"]);
-    assert_says(&other, BAD_INPUT, &["mesh.rho was 3.0 and is now 4.0", "--restart"]);
+    assert_says(&other, BAD_INPUT, &["mesh.rho was 3.0, now 4.0", "--restart"]);
     assert_says(
         &run(&fixture("tree_30.swc"), &path("b.vtu"), &["--work-dir", &work, "--root", "30"]),
         BAD_INPUT,
@@ -140,13 +140,13 @@ fn what_cannot_fit_is_refused_with_an_estimate_and_touches_nothing() {
     fs::write(&out, "an earlier mesh").expect("written");
     let tree = fixture("tree_30.vtp");
     let small = run(&tree, &out, &["--memory", "1MiB"]);
-    assert_says(&small, BAD_INPUT, &["the largest block", "1.0 MiB are allowed", "--memory"]);
+    assert_says(&small, BAD_INPUT, &["the largest block", "more than the limit of 1.0 MiB", "--memory"]);
     assert_says(&run(&tree, &out, &["--rho", "1000"]), BAD_INPUT, &["tetrahedra", "TiB", "--rho"]);
-    assert_says(&run(&tree, &out, &["--rho", "1000", "--memory", "1000TiB"]), BAD_INPUT, &["are free"]);
+    assert_says(&run(&tree, &out, &["--rho", "1000", "--memory", "1000TiB"]), BAD_INPUT, &["has ", " free ("]);
     assert_says(
         &run(&tree, &out, &["--joint", "woven", "--memory", "1MiB"]),
         BAD_INPUT,
-        &["hold it whole", "--joint disc"],
+        &["need the whole mesh in memory", "--joint disc"],
     );
     for rho in ["0", "-3", "nan", "inf"] {
         assert_says(&run(&tree, &out, &["--rho", rho]), USAGE, &["rho"]);
@@ -174,7 +174,7 @@ fn a_full_disk_is_an_error_that_says_so() {
     assert_code(&run(&tree, &folder.path().join("b.vtu"), &["--work-dir", first.to_str().expect("text")]), FINE);
     fs::copy(first.join("anastomesh.json"), work.join("anastomesh.json")).expect("copied");
     let full = run(&tree, &folder.path().join("a.vtu"), &options);
-    assert_says(&full, BAD_INPUT, &["cannot be written", "make room", "--work-dir"]);
+    assert_says(&full, BAD_INPUT, &["cannot be written", "free some space", "--work-dir"]);
     assert_eq!(fs::read(folder.path().join("a.vtu")).expect("there"), b"an earlier mesh");
 }
 

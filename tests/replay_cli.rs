@@ -58,7 +58,7 @@ fn a_block_fails_again_in_the_same_place() {
 fn a_block_that_comes_out_is_written_on_request() {
     let folder = folder();
     let dump = changed(&failing(folder.path()), "thick.json", thicken);
-    assert_says(&run("replay", &[&dump], &[]), FINE, &["comes out", "tetrahedra", "-o MESH"]);
+    assert_says(&run("replay", &[&dump], &[]), FINE, &["was meshed", "tetrahedra", "-o MESH"]);
     for name in ["block.vtu", "block.msh"] {
         let out = folder.path().join(name);
         let made = run("replay", &[&dump, Path::new("-o"), &out], &["--json"]);
@@ -106,23 +106,23 @@ fn what_is_no_dump_is_refused_with_what_to_do() {
     };
     for length in [0, 1, whole.len() / 3, whole.len() - 1] {
         fs::write(&other, &whole[..length]).expect("a file");
-        refused(&other, &["cut off", "run `mesh` again"]);
+        refused(&other, &["truncated", "run `mesh` again"]);
     }
     for text in [&b"[1, 2]"[..], b"It was the best of times", b"\xff\xfe", b"{\"format\": \"new\"}", b"7"] {
         fs::write(&other, text).expect("a file");
-        refused(&other, &["no dump of a block", "MESH.failed"]);
+        refused(&other, &["not a block dump", "MESH.failed"]);
     }
     refused(&folder.path().join("missing.json"), &["cannot be read"]);
     refused(folder.path(), &["cannot be read"]);
     let without =
         changed(&dump, "without.json", |content| drop(content.as_object_mut().expect("a map").remove("format")));
-    refused(&without, &["does not say of which format"]);
+    refused(&without, &["the format version is missing"]);
     let newer = changed(&dump, "newer.json", |content| {
         content["format"] = 99.into();
         content["program"] = "anastomesh 9.9".into();
         content["input"] = Value::Null;
     });
-    refused(&newer, &["format 99", "anastomesh 9.9", "run `mesh` again"]);
+    refused(&newer, &["format version 99", "anastomesh 9.9", "run `mesh` again"]);
 }
 
 #[test]
@@ -139,12 +139,12 @@ fn numbers_that_no_block_has_are_refused() {
         assert_message(&refused, &path, words);
     };
     let cluster = "/input/cluster/cluster";
-    refused("/params/rho", (-3.0).into(), &["rho", "which no block has"]);
+    refused("/params/rho", (-3.0).into(), &["rho", "which is out of range"]);
     refused("/params/rho", 1e9.into(), &["--memory"]);
     refused("/params/voxel_factor", 1e-9.into(), &["--memory"]);
     refused("/params/first_division", 1000.into(), &["first_division"]);
     refused(&format!("{cluster}/tubes/0/ra"), 0.0.into(), &["a radius is 0"]);
-    refused(&format!("{cluster}/tubes/0/ra"), Value::Null, &["no dump of a block"]);
+    refused(&format!("{cluster}/tubes/0/ra"), Value::Null, &["not a block dump"]);
     refused(&format!("{cluster}/tubes/0/a"), value!([1e300, 0.0, 0.0]), &["a point lies at"]);
     refused(&format!("{cluster}/ends/0/section/axis"), value!([0.0, 0.0, 0.0]), &["an axis has the length 0"]);
     refused(&format!("{cluster}/ends/0/overrun"), 77.into(), &["tube 77 of 3"]);

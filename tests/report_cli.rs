@@ -51,7 +51,7 @@ fn a_mesh_and_its_check() {
         "Refinement",
         "Blocks and times",
         "Inlets and outlets",
-        "How it was made",
+        "Command line",
     ];
     holds(&html, &headings.map(|h| format!("<h2>{h}</h2>")).each_ref().map(String::as_str));
     holds(
@@ -87,12 +87,7 @@ fn what_is_wrong_is_shown_where_it_is() {
     let html = page(&out);
     holds(
         &html,
-        &[
-            "class=\"verdict bad\">NOT valid<",
-            "pictures aimed",
-            "every tetrahedron is positive: 1 found",
-            "In the ring:",
-        ],
+        &["class=\"verdict bad\">NOT valid<", "pictures aimed", "1 tetrahedron is inverted or flat", "(circled, at "],
     );
 }
 
@@ -109,7 +104,7 @@ fn refined_networks_filled_surfaces_and_blocks_that_fail() {
     let hopeless = folder.path().join("hopeless.vtp");
     fs::write(&hopeless, HOPELESS).expect("written");
     assert_code(&mesh(&hopeless, &folder.path().join("h.vtu"), &report), STAGE_FAILED);
-    holds(&page(&out), &["class=\"verdict bad\">", "What is missing", "could not be meshed", "cluster"]);
+    holds(&page(&out), &["class=\"verdict bad\">", "Failed blocks", "could not be meshed", "cluster"]);
     let nowhere = folder.path().join("none/r.html");
     let refused =
         mesh(&fixture("tree_30.vtp"), &folder.path().join("m.vtu"), &["--report", nowhere.to_str().expect("a path")]);

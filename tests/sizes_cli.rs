@@ -85,8 +85,8 @@ fn an_array_of_the_network_says_where() {
     let out = folder.path().join("wild.vtu");
     let wild = mesh(&network(&folder, [1.0, 0.01, 500.0, 1.0]), &out, &["--size-at", "Size"]);
     assert_code(&wild, FINE);
-    assert!(stderr(&wild).contains("edges at 1 fork(s) are 0.25 times as long"), "{}", stderr(&wild));
-    assert!(stderr(&wild).contains("1 fork(s) with less than 0.25"), "{}", stderr(&wild));
+    assert!(stderr(&wild).contains("edge length at 1 fork multiplied by 0.25"), "{}", stderr(&wild));
+    assert!(stderr(&wild).contains("limited to the range 0.25 to 20: 1 fork and "), "{}", stderr(&wild));
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn a_folder_for_simvascular_names_every_patch() {
     // Obstructing files are reported before meshing.
     fs::write(path.join("results.vtu"), "").expect("a file");
     assert_says(&mesh(&folder.path().join("forks.swc"), &path, &[]), BAD_INPUT, &["also holds results.vtu"]);
-    assert_says(&run("check", &[&path], &[]), BAD_INPUT, &["cases of solvers are written, not read"]);
+    assert_says(&run("check", &[&path], &[]), BAD_INPUT, &["solver cases can be written but not read"]);
 }
 
 #[test]

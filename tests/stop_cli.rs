@@ -75,7 +75,7 @@ fn a_mesh_that_is_stopped_leaves_its_blocks_and_says_how_it_goes_on() {
         assert_says(
             &output,
             STOPPED,
-            &["stopping; Ctrl-C again", "finished blocks are kept in", "Go on from there with"],
+            &["stopping; press Ctrl-C again", "finished blocks are kept in", "Continue with"],
         );
         let said = stderr(&output);
         assert!(
@@ -142,7 +142,7 @@ fn a_tetrahedralization_that_is_stopped_leaves_nothing() {
         &[&surface, Path::new("-o"), &folder.path().join("a.vtu")],
         &["--size", "0.02", "-q"],
     );
-    assert_eq!(stderr(&quiet), "anastomesh: stopped; nothing is kept, and no file is touched\n");
+    assert_eq!(stderr(&quiet), "anastomesh: stopped; nothing is kept, and no file was changed\n");
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn a_refinement_that_is_stopped_leaves_nothing() {
     assert_code(&run("generate", &[Path::new("-o"), &network], &["--terminals", "3000", "-q"]), FINE);
     let out = folder.path().join("out.vtp");
     let output = stopped("refine", &[&network, Path::new("-o"), &out], &["--every", "1"]);
-    assert_says(&output, STOPPED, &["nothing is kept, and no file is touched"]);
+    assert_says(&output, STOPPED, &["nothing is kept, and no file was changed"]);
     assert_eq!(entries(folder.path()), ["net.vtp"]);
 }
 

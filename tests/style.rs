@@ -80,7 +80,7 @@ enum Kind {
 }
 
 /// Verbs that may follow a number that identifies something: 'row 1 names 2'.
-const VERBS: [&str; 5] = ["names", "needs", "ends", "changes", "leaves"];
+const VERBS: [&str; 6] = ["names", "needs", "ends", "changes", "leaves", "refers"];
 
 const KINDS: [(Kind, &str); 4] =
     [(Kind::Opening, "opening"), (Kind::Sentence, "sentence"), (Kind::Word, "word"), (Kind::Plural, "plural")];

@@ -298,8 +298,8 @@ fn layers_are_made_and_what_cannot_be_is_refused() {
         (&["--layers", "0"][..], &["1 to 30"][..]),
         (&["--layers", "3", "--layer-growth", "-1"], &["0.2 to 5"]),
         (&["--layers", "3", "--layer-thickness", "1.5"], &["0.001 to 0.8"]),
-        (&["--layers", "29", "--layer-growth", "3"], &["fewer layers"]),
-        (&["--layers", "3", "--split"], &["may not be split"]),
+        (&["--layers", "29", "--layer-growth", "3"], &["give fewer or thicker layers"]),
+        (&["--layers", "3", "--split"], &["the boundary may be split"]),
         (&["--layers", "3", "--plc"], &["complex"]),
         (&["--layer-growth", "2"], &["--layers"]),
     ] {

@@ -47,7 +47,7 @@ fn surfaces_that_bound_no_volume() {
     let mut fin = cube();
     fin.points.push(Point3::new(2.0, 2.0, 2.0));
     fin.triangles.extend([[0, 1, 8], [0, 8, 1]]);
-    refuse("a.off", off(&fin), &[], &["triangle 12 is there twice (also as 13)", "--repair"]);
+    refuse("a.off", off(&fin), &[], &["triangle 12 is duplicated by 13", "--repair"]);
     fin.triangles.pop();
     refuse("a.off", off(&fin), &[], &["not manifold", "--plc"]);
     let mut turned = cube();
@@ -57,7 +57,7 @@ fn surfaces_that_bound_no_volume() {
     let second = corners(0.5, 1.5);
     through.points.extend(&second);
     through.triangles.extend(cube().triangles.iter().map(|t| t.map(|v| v + 8)));
-    refuse("a.off", off(&through), &[], &["meets itself", "pairs", "separate or unite"]);
+    refuse("a.off", off(&through), &[], &["intersects itself", "pair", "separate or unite"]);
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn triangles_and_points_that_make_no_sense() {
     // Edge 0 1 is split on one side only in name: a degenerate triangle fills the gap.
     flat.triangles.push([0, 8, 1]);
     flat.triangles.push([0, 1, 8]);
-    refuse("a.off", off(&flat), &["--plc"], &["no area", "12"]);
+    refuse("a.off", off(&flat), &["--plc"], &["without area", "12"]);
     let mut twice = cube();
     twice.points.extend(corners(0.0, 1.0));
     let n = twice.triangles.len();
@@ -77,7 +77,7 @@ fn triangles_and_points_that_make_no_sense() {
     refuse("a.off", off(&twice), &[], &["triangles"]);
     let mut coincident = cube();
     coincident.points.push(Point3::origin());
-    refuse("a.off", off(&coincident), &[], &["repeat", "--repair"]);
+    refuse("a.off", off(&coincident), &[], &["1 duplicate point:", "--repair"]);
     for bad in ["nan", "inf", "-Infinity"] {
         refuse("a.off", off(&cube()).replacen("1.0", bad, 1), &[], &["finite", "line"]);
     }
@@ -89,7 +89,7 @@ fn triangles_and_points_that_make_no_sense() {
     let plane: Vec<Point3> = (0..9).map(|i| Point3::new(f64::from(i % 3), f64::from(i / 3), 0.0)).collect();
     refuse("a.node", node_list(&plane, 0), &[], &["one plane"]);
     refuse("a.node", node_list(&plane[..2], 0), &[], &["four points"]);
-    refuse("a.node", node_list(&[corners(0.0, 1.0), corners(0.0, 1.0)].concat(), 0), &[], &["repeat", "8"]);
+    refuse("a.node", node_list(&[corners(0.0, 1.0), corners(0.0, 1.0)].concat(), 0), &[], &["8 duplicate points"]);
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn facets_that_make_no_sense() {
     refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 1 3 10"), &[], &["facet 1", "no area"]);
     refuse("a.smesh", cube_smesh().replace("4 1 3 4 2 10", "4 1 3 4 9 10"), &[], &["facet 1", "9"]);
     let half = rooms(false).replace(" 7 0.01", " 7.5 0.01");
-    refuse("a.poly", half, &[], &["region 0", "7.5", "integers"]);
+    refuse("a.poly", half, &[], &["region 0", "7.5", "give an integer"]);
     // Without its lid the box encloses nothing.
     refuse("a.smesh", cube_smesh().replace("6 1\n4 1 3 4 2 10\n", "5 1\n"), &[], &["enclose"]);
 }
@@ -242,10 +242,13 @@ fn facets_outside_are_left_out_with_a_note() {
     assert_code(&made, FINE);
     let said = stderr(&made);
     assert!(
-        said.contains("4 triangles of the facets 7, 8 (counted from 1)") && said.contains("1 segments 18-19"),
+        said.contains(
+            "omitted: 4 triangles of the facets outside the filled region, or in a hole (--strict refuses this): 7, 8 ("
+        ) && said.contains("omitted: 1 segment outside")
+            && said.contains(": 18-19 ("),
         "{said}"
     );
-    assert!(said.contains("no tetrahedron has: 8"), "{said}");
+    assert!(said.contains("unused: 8 input points without tetrahedra"), "{said}");
     let quiet = fill(&input, &out, &["--quiet"]);
     assert!(quiet.stderr.is_empty());
 }
@@ -253,7 +256,7 @@ fn facets_outside_are_left_out_with_a_note() {
 #[test]
 fn strict_refuses_what_would_be_left_out() {
     let all = cube_with_things_outside();
-    let parts = ["4 triangles lie outside", "filled: 7, 8 (", "their facets", "count from 1", "--strict"];
+    let parts = ["4 triangles lie outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");
@@ -263,7 +266,7 @@ fn strict_refuses_what_would_be_left_out() {
         "a.poly",
         all.replace("4 9 10 12 11", "3 15 16 17"),
         &["--strict"],
-        &["triangle 7 is there twice (also as 9)", "--repair"],
+        &["triangle 7 is duplicated by 9", "--repair"],
     );
 }
 
@@ -302,8 +305,8 @@ fn triangles_that_are_there_twice_are_named_and_joined() {
         let mut twice = cube();
         twice.triangles.push(again);
         let bytes = binary_stl(&twice);
-        refuse("a.stl", &bytes, &[], &["triangle 5 is there twice (also as 12)", "count from 0", "--repair"]);
-        refuse("a.stl", &bytes, &["--plc"], &["triangle 5 is there twice (also as 12)", "--repair"]);
+        refuse("a.stl", &bytes, &[], &["triangle 5 is duplicated by 12", "count from 0", "--repair"]);
+        refuse("a.stl", &bytes, &["--plc"], &["triangle 5 is duplicated by 12", "--repair"]);
         for options in [&["--repair"][..], &["--repair", "--plc"]] {
             let made = report(&save(&folder, "a.stl", &twice), &out, options);
             assert_eq!(made["report"]["mesh"]["faces"], 12);
@@ -339,7 +342,7 @@ fn corners_that_are_not_shared_are_said_to_be_so_and_joined() {
         ("a.off", format!("OFF\n24 6 0\n{listed}{}", quads("4", 0)), "count from 0"),
         ("a.obj", format!("{vertices}{}", quads("f", 1)), "count from 1"),
     ] {
-        refuse(name, &content, &[], &["corners are not shared", base, "--repair joins those at the same place"]);
+        refuse(name, &content, &[], &["vertices are not merged", base, "merge them, or give --repair"]);
         let out = folder.path().join("a.vtu");
         let made = report(&text(&folder, name, &content), &out, &["--repair"]);
         assert_eq!((&made["report"]["mesh"]["points"], &made["report"]["mesh"]["faces"]), (&8.into(), &12.into()));
@@ -354,7 +357,7 @@ fn numbers_are_those_of_the_file() {
     let vertices: String = whole.points.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
     let faces: String =
         SIDES[..5].iter().map(|side| format!("f {}\n", side.map(|v| (v + 1).to_string()).join(" "))).collect();
-    let said = "open: 4 triangles have an edge of their own: 1, 2, 3, 4; one is [2, 4] from {1, 0, 0} to {1, 1, 0} \
+    let said = "open: 4 triangles with an unshared edge: 1, 2, 3, 4; one edge is [2, 4] from {1, 0, 0} to {1, 1, 0} \
         (triangles have the numbers of their faces; faces and points count from 1, as in the file)";
     refuse("a.obj", vertices + &faces, &[], &[said]);
     // After a repair that removes two triangles and merges points, the others keep their numbers.
@@ -366,7 +369,7 @@ fn numbers_are_those_of_the_file() {
         *t = t.map(|v| v + 1);
     }
     holed.triangles[1] = [0, 8, 0];
-    let said = "3 triangles have an edge of their own: 4, 6, 12; one is [0, 2] from {1, 1, 1} to {1, 0, 0}";
+    let said = "3 triangles with an unshared edge: 4, 6, 12; one edge is [0, 2] from {1, 1, 1} to {1, 0, 0}";
     refuse("a.off", off(&holed), &["--repair"], &[said, "count from 0, as in the file"]);
 }
 
@@ -378,7 +381,7 @@ fn a_length_that_the_boundary_does_not_allow_is_told() {
     let output = fill(&input, &out, &["--size", "0.2"]);
     assert_code(&output, FINE);
     let said = stderr(&output);
-    assert!(said.contains("18 of 18 edges of the input are longer") && said.contains("--split lets them"), "{said}");
+    assert!(said.contains("by 18 of 18 input edges") && said.contains("--split allows splitting them"), "{said}");
     let told = report(&input, &out, &["--size", "0.2"]);
     let unmet = &told["report"]["size_unmet"];
     assert_eq!((&unmet["longer"], &unmet["edges"]), (&18.into(), &18.into()));
@@ -387,11 +390,14 @@ fn a_length_that_the_boundary_does_not_allow_is_told() {
     for options in [&["--size", "2"][..], &["--size", "0.3", "--split"]] {
         let output = fill(&input, &out, options);
         assert_code(&output, FINE);
-        assert!(!stderr(&output).contains("the input stay"), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("input triangles are fixed"), "{}", stderr(&output));
         assert!(report(&input, &out, options)["report"]["size_unmet"].is_null());
     }
     // Violated bounds report the number of tetrahedra at fixed faces.
     let output = fill(&input, &out, &["--tetgen", "pYq1.4/46"]);
     let said = stderr(&output);
-    assert!(said.contains("of them on triangles of the input") && said.contains("leaving out Y lets them"), "{said}");
+    assert!(
+        said.contains("at fixed input triangles") && said.contains("leaving out Y allows splitting them"),
+        "{said}"
+    );
 }

@@ -50,19 +50,19 @@ pub struct ConnectorSurface {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConnectorFault {
     /// The path has no length.
-    #[error("the path has no length")]
+    #[error("the path has zero length")]
     Path,
     /// The disc of a side cannot be triangulated.
     #[error("the disc of side {0} cannot be triangulated")]
     Disc(u8),
     /// A rim does not wind once around the axis.
-    #[error("the rim of side {0} does not run once round the axis")]
+    #[error("the rim of side {0} does not wind once around the axis")]
     Rim(u8),
     /// The end surfaces intersect each other's planes.
     #[error("the end surfaces overlap along the axis")]
     Overlap,
     /// Every strip between two neighbouring rings folds.
-    #[error("strip {0} folds")]
+    #[error("the surface folds at strip {0}")]
     Fold(u32),
 }
 

@@ -59,16 +59,18 @@ pub enum BlockInput {
 #[non_exhaustive]
 pub enum DumpError {
     /// The file is truncated.
-    #[error("it is cut off ({0}): copy it again, or run `mesh` again, which writes it anew")]
+    #[error("the file is truncated ({0}): copy it again, or run `mesh` again to rewrite it")]
     CutOff(serde_json::Error),
     /// The file is not a dump.
-    #[error("it is no dump of a block ({0}): give a file of the folder MESH.failed that `mesh` leaves")]
+    #[error("not a block dump ({0}): give a file of the folder MESH.failed, which `mesh` writes")]
     Other(serde_json::Error),
     /// The format version is missing.
-    #[error("it does not say of which format it is: run `mesh` again with this version, which writes it anew")]
+    #[error("the format version is missing: run `mesh` again with this version to rewrite the file")]
     NoFormat,
     /// Another version of the program wrote the dump.
-    #[error("it is of format {format} (by {program}), this version reads {FORMAT}: run `mesh` again, or that version")]
+    #[error(
+        "format version {format} (written by {program}) is not supported, only {FORMAT}: run `mesh` again, or use that program"
+    )]
     Format {
         /// Format version of the dump.
         format: u32,
@@ -76,7 +78,7 @@ pub enum DumpError {
         program: String,
     },
     /// A number is out of range.
-    #[error("{what}, which no block has: the file was changed, run `mesh` again, which writes it anew")]
+    #[error("{what}, which is out of range: the file was modified; run `mesh` again to rewrite it")]
     Senseless {
         /// Name of the number and its fault.
         what: String,

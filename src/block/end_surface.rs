@@ -43,7 +43,7 @@ pub struct StoredEnd {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EndFault {
     /// A triangle's projection onto the cut plane is not positive.
-    #[error("triangle {0} is not projection flat")]
+    #[error("triangle {0} folds in projection")]
     Fold(u32),
     /// A directed edge occurs twice, the boundary is not one simple loop, or the Euler number is not 1.
     #[error("not a disc")]

@@ -5,6 +5,7 @@ use super::end_surface::CutEnd;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::{CapError, SurfaceError};
 use anastomesh_mesh::check::Line;
+use anastomesh_mesh::units::{counted, number};
 use anastomesh_tet::TetError;
 
 /// Reasons for a missing end surface at a cut.
@@ -12,22 +13,22 @@ use anastomesh_tet::TetError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlattenFailure {
     /// No tetrahedron lies beyond the plane near the vessel's axis.
-    #[error("nothing lies beyond the cut plane")]
+    #[error("no wall lies beyond the cut plane")]
     NothingBeyond,
     /// The part beyond the plane is connected to something far from the vessel's axis: a fused neighbour.
-    #[error("the piece beyond the cut plane leaves its vessel")]
+    #[error("the part beyond the cut plane extends into another vessel")]
     LeavesVessel,
     /// Flattening removed tetrahedra down to the depth limit.
-    #[error("flattening went too deep")]
+    #[error("flattening of the end exceeded the depth limit")]
     TooDeep,
     /// Handles, pinched vertices or several loops remain.
-    #[error("the end surface is not one disc")]
+    #[error("the end surface is not a disc")]
     NotADisc,
     /// The disc at the cut differs from the shared disc of the vessel.
-    #[error("the disc at the cut is not the shared one")]
+    #[error("the disc at the cut differs from the shared disc")]
     NotShared,
     /// The work limit is reached.
-    #[error("flattening does not end")]
+    #[error("flattening of the end exceeded the work limit")]
     Budget,
 }
 
@@ -55,7 +56,7 @@ pub enum BlockError {
         source: SurfaceError,
     },
     /// The wall's genus differs from the skeleton's loop count: neighbours fused, or a loop closed.
-    #[error("cluster {}: the wall has {handles} handles, the skeleton {loops} loops", cluster.0)]
+    #[error("cluster {}: expected {}, found {}", cluster.0, counted(*loops as usize, "loop"), counted(*handles as usize, "handle"))]
     Genus {
         /// The cluster.
         cluster: ClusterId,
@@ -65,7 +66,7 @@ pub enum BlockError {
         loops: i64,
     },
     /// A part of a vessel's axis lies outside the wall.
-    #[error("cluster {}: the axis of a vessel is not within the wall near {at:?}", cluster.0)]
+    #[error("cluster {}: the axis of a vessel lies outside the wall near {at:?}", cluster.0)]
     Outside {
         /// The cluster.
         cluster: ClusterId,
@@ -119,7 +120,7 @@ pub enum BlockError {
         source: NotOnBoundary,
     },
     /// The block contains a tetrahedron so flat that a retry is worthwhile.
-    #[error("{block}: a tetrahedron is all but flat (radius ratio {ratio:.2e}, dihedral angle {dihedral:.1}°)")]
+    #[error("{block}: {}", too_flat(*ratio, *dihedral, *limits))]
     Flat {
         /// `cluster 12` or `connector 7`.
         block: String,
@@ -127,9 +128,11 @@ pub enum BlockError {
         ratio: f64,
         /// Smallest dihedral angle, in degrees.
         dihedral: f64,
+        /// Required minimum of both.
+        limits: [f64; 2],
     },
     /// The surface of a hollow block is invalid.
-    #[error("{block}: its surface is not sound: it does not hold that {}", line.statement())]
+    #[error("{block}: invalid surface: the condition '{}' failed", line.statement())]
     Unsound {
         /// `cluster 12` or `connector 7`.
         block: String,
@@ -146,6 +149,17 @@ pub enum BlockError {
         /// Failed attempts in order.
         attempts: Vec<ConnectorAttempt>,
     },
+}
+
+/// Text on the quantity of a block that is below its limit.
+fn too_flat(ratio: f64, dihedral: f64, [least_ratio, least_dihedral]: [f64; 2]) -> String {
+    if ratio < least_ratio {
+        format!("radius ratio {} is below {}", number(ratio), number(least_ratio))
+    } else if dihedral < least_dihedral {
+        format!("dihedral angle {dihedral:.1}° is below {}°", number(least_dihedral))
+    } else {
+        "its validity check failed".into()
+    }
 }
 
 /// Failed attempt at a connector.
@@ -171,7 +185,7 @@ pub enum ConnectorFailure {
 
 /// Face assigned to an end that does not close the block, which is a bug.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("face {face:?} does not lie on the block's boundary, or belongs to two of its ends")]
+#[error("face {face:?} is not on the boundary of the block, or belongs to two of its ends")]
 pub struct NotOnBoundary {
     /// Vertices of the face in the block.
     pub face: [u32; 3],

@@ -1,9 +1,10 @@
-//! How the blocks of a network are made: arguments of every verb that makes them.
+//! Options for block meshing, shared by all commands that mesh networks.
 
 use super::exit::Failure;
 use super::limits::size;
 use super::log;
 use super::network::NetworkArgs;
+use super::numbers::number;
 use crate::pipeline::{MeshPlan, RunReport};
 use crate::report::advice::advice;
 use anastomesh_io::network::NetworkFile;
@@ -12,12 +13,12 @@ use anastomesh_skeleton::{BadSize, NodeSizes, SizeAt};
 use std::fmt;
 use std::str::FromStr;
 
-/// What `--size-at` is given.
+/// Value of `--size-at`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SizeArg {
-    /// A factor at forks.
+    /// Factor at bifurcations.
     Forks(f64),
-    /// The name of an array.
+    /// Name of a node array.
     Array(String),
 }
 
@@ -39,7 +40,7 @@ impl fmt::Display for SizeArg {
 }
 
 impl SizeArg {
-    /// What is known of it before the network is.
+    /// Size field as far as known before the network is read.
     fn planned(&self) -> Option<SizeAt> {
         match self {
             Self::Forks(factor) => Some(SizeAt::Forks(*factor)),
@@ -51,40 +52,39 @@ impl SizeArg {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Blocks")]
 pub struct BlockArgs {
-    /// Resolution: voxels across the thinnest vessel of a cluster; larger is finer
-    #[arg(long, default_value_t = RHO, allow_negative_numbers = true)]
+    /// Resolution: grid cells across the thinnest vessel of a block; larger is finer
+    #[arg(long, default_value_t = RHO, allow_negative_numbers = true, value_parser = number)]
     pub rho: f64,
-    /// How far edges follow the radius of wider vessels: 1 in proportion, so that each has RHO voxels across; 0 not at all,
-    /// so that all of a cluster is as fine as its thinnest vessel
-    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true)]
+    /// Dependence of edge lengths on the vessel radius: 1 proportional, 0 uniform within a block
+    #[arg(long, default_value_t = FOLLOW, allow_negative_numbers = true, value_parser = number)]
     pub follow: f64,
-    /// How much longer than wide tetrahedra are along vessels, in tubes between forks and caps: 1 to 20
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    /// Aspect ratio of tetrahedra along tubes between bifurcations and caps: 1 to 20
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_parser = number)]
     pub stretch: f64,
-    /// Shorter edges at forks: so many times as long as RHO has them, 0.25 to 1, growing again towards the tubes; or by an array
-    /// of the network's nodes, in which numbers below 1 make forks finer, and those above 1 stretch tubes
+    /// Factor on edge lengths at bifurcations, 0.25 to 1, or a node array of factors. Array values below 1 refine
+    /// bifurcations, values above 1 stretch tubes
     #[arg(long, value_name = "FACTOR|ARRAY", allow_negative_numbers = true)]
     pub size_at: Option<SizeArg>,
-    /// Memory that may be used, such as 2GiB or 500MB, however large the network
+    /// Memory limit, such as 2GiB or 500MB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
     pub memory: u64,
-    /// Refine the network first, in at most N iterations, so that its vessels do not overlap and can be cut
+    /// Move overlapping vessels apart before meshing, in at most N iterations
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
     pub refine: Option<usize>,
-    /// Leave out blocks that fail, say so, and exit 4 all the same
+    /// Mesh without the failed blocks, list them, and exit with code 4
     #[arg(long)]
     pub keep_going: bool,
 }
 
 impl BlockArgs {
-    /// Says what may help.
+    /// Prints advice.
     pub fn advise(&self, run: &RunReport, invalid: bool) {
         for line in advice(run, invalid, self.refine.is_some(), self.rho) {
             log::note(&line);
         }
     }
 
-    /// The plan that they ask for. `fuse`: vessels that overlap once the network is refined are meshed together.
+    /// Plan of these options. `fuse`: vessels that still overlap after refinement are meshed as one lumen.
     pub fn plan(&self, fuse: bool) -> MeshPlan {
         MeshPlan {
             rho: self.rho,
@@ -98,7 +98,7 @@ impl BlockArgs {
         }
     }
 
-    /// Reads the network that they are for, with what it says of their blocks, which goes into the plan.
+    /// Reads the network, and puts its size array into the plan.
     pub fn read(&self, network: &NetworkArgs, any_radii: bool, plan: &mut MeshPlan) -> Result<NetworkFile, Failure> {
         let Some(SizeArg::Array(array)) = &self.size_at else { return network.file(any_radii) };
         let options = network.options(any_radii).node_array(Some(array.clone()));
@@ -107,7 +107,7 @@ impl BlockArgs {
         Ok(file)
     }
 
-    /// What of them a mesh depends on, as they are typed.
+    /// Options that the mesh depends on, as command-line text.
     pub fn typed(&self) -> String {
         let refine = self.refine.map_or_else(String::new, |n| format!(" --refine {n}"));
         let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
@@ -116,12 +116,11 @@ impl BlockArgs {
     }
 }
 
-/// Lengths of edges by an array of the file.
+/// Size field of a node array of the file.
 fn sizes(array: &str, file: &NetworkFile) -> Result<SizeAt, Failure> {
     let sizes = NodeSizes::new(array, &file.node_values).map_err(|BadSize { node, value }| {
         Failure::input(format!(
-            "--size-at {array}: node {} has the value {value}; each node needs a finite number above zero (1: edges as \
-             rho has them): correct the array",
+            "--size-at {array}: node {} has the value {value}: give finite numbers above zero (1: no change)",
             file.names.of(node)
         ))
     });

@@ -1,4 +1,4 @@
-//! `anastomesh check`: a volume mesh verified line by line.
+//! `anastomesh check`: validity check of a volume mesh.
 
 use std::path::{Path, PathBuf};
 
@@ -21,16 +21,15 @@ use anastomesh_mesh::progress::Stage;
 use anastomesh_mesh::{TET_FACES, VolumeMesh};
 use rustc_hash::FxHashMap;
 
-/// Bytes of memory that the check of a whole takes for each byte of its file.
+/// Memory of an in-memory check per byte of the file, in bytes.
 const MEMORY_PER_BYTE: u64 = 8;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The mesh: VTU, PVTU, MSH 4.1, Medit .mesh, TetGen's .ele, or .npyd (`NumPy`'s arrays)
+    /// Mesh file: .vtu, .pvtu, .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen) or .npyd (folder of `NumPy` arrays)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
-    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is checked block by block. All other
-    /// files are held as a whole
+    /// Memory limit for VTU files of `mesh`, which are then checked block by block. Other files are loaded completely
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     #[command(flatten)]
@@ -39,7 +38,7 @@ pub struct Args {
     common: Common,
 }
 
-/// Checks a mesh file and prints the result of every line.
+/// Checks a mesh file and prints the result.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     args.report.ensure_writable()?;
     let pool = thread_pool(args.common.threads)?;
@@ -57,7 +56,7 @@ fn checked(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     by_blocks(args)?.map_or_else(|| as_a_whole(args), Ok)
 }
 
-/// For people: how large the mesh is, how many conditions hold, and which do not; with `-v` all of them.
+/// Text report: size of the mesh and failed conditions; all conditions with `-v`.
 fn text(report: &CheckReport, args: &Args) -> String {
     let verbose = args.common.verbose;
     let page: Vec<&Path> = args.report.page().into_iter().map(PathBuf::as_path).collect();
@@ -65,7 +64,7 @@ fn text(report: &CheckReport, args: &Args) -> String {
     format!("{all}{}{}{}", of_mesh(report), ended(&page).rows(&[]), of_check(report, verbose))
 }
 
-/// Writes the page of `--report`.
+/// Writes the HTML report.
 fn write_page(args: &Args, report: &CheckReport, mut mesh: OpenedMesh) -> Result<(), Failure> {
     mesh.label_boundary();
     let (mesh, notes) = (mesh.source(), mesh.notes());
@@ -94,14 +93,14 @@ fn of_whole(file: &MeshFile) -> CheckReport {
     if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) }
 }
 
-/// Checks a large file without holding the mesh; none when it is not large, or has to be held.
+/// Checks a large file block by block; `None` if the file is small or must be loaded completely.
 fn by_blocks(args: &Args) -> Result<Option<(CheckReport, OpenedMesh)>, Failure> {
     let length = std::fs::metadata(&args.mesh).map_or(0, |data| data.len());
     if length.saturating_mul(MEMORY_PER_BYTE) <= args.memory || MeshFormat::of(&args.mesh).ok() != Some(MeshFormat::Vtu)
     {
         return Ok(None);
     }
-    // A share for blocks of the file, one for walls; what is known of each block takes the rest.
+    // A quarter each for blocks of the file and for walls; facts about blocks take the rest.
     let report = match VtuPieces::open(&args.mesh, share(args.memory)) {
         Ok(pieces) => of_pieces(&args.mesh, &pieces, args.memory)?.map(|report| (report, OpenedMesh::Pieces(pieces))),
         Err(VtuPiecesError::Read(source)) => return Err(unreadable(&args.mesh, &source)),
@@ -114,11 +113,11 @@ fn share(memory: u64) -> usize {
     (memory / 4) as usize
 }
 
-/// Checks pieces; or why they cannot be checked as such.
+/// Checks pieces; the inner error is the reason why they cannot be checked separately.
 fn of_pieces(path: &Path, pieces: &VtuPieces, memory: u64) -> Result<Result<CheckReport, String>, Failure> {
     let expectation = pieces.notes().expectation.as_ref();
     if expectation.is_none() {
-        return Ok(Err("it does not say what is expected of it".into()));
+        return Ok(Err("it does not contain the expected loops and terminals".into()));
     }
     match check_pieces(pieces, expectation, share(memory)) {
         Ok(report) => Ok(Ok(report)),
@@ -127,19 +126,18 @@ fn of_pieces(path: &Path, pieces: &VtuPieces, memory: u64) -> Result<Result<Chec
     }
 }
 
-/// Checks a mesh that is open, without holding it if it is not held; none, with a word, where that cannot be done.
+/// Checks an opened mesh; `None` with a warning if it cannot be checked block by block.
 pub fn check_opened(path: &Path, opened: &OpenedMesh, memory: u64) -> Result<Option<CheckReport>, Failure> {
     let report = match opened {
         OpenedMesh::Whole(file) => Ok(of_whole(file)),
         OpenedMesh::Pieces(pieces) => of_pieces(path, pieces, memory)?,
     };
-    let unchecked =
-        |why| log::warning(&format!("{} is not checked: {why}; `anastomesh check` does it", path.display()));
+    let unchecked = |why| log::warning(&format!("{}: check skipped: {why}; run `anastomesh check`", path.display()));
     Ok(report.map_err(unchecked).ok())
 }
 
-/// Leaves out the labelled faces that lie between two tetrahedra: meshes of others, and of complexes of facets, label
-/// surfaces inside as well. A network's mesh has none, and would be wrong if it had.
+/// Removes labelled faces between two tetrahedra. Meshes of other programs and of facet complexes also label interior
+/// surfaces; in a mesh of a network they are an error.
 fn drop_interior_faces(volume: &mut VolumeMesh) {
     let sorted = |mut face: [u32; 3]| {
         face.sort_unstable();

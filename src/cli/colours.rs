@@ -1,4 +1,4 @@
-//! Colours on a terminal: what is wrong is red, what is right green; words at the head of rows are dim.
+//! Terminal colours: errors red, success green, row labels cyan.
 
 use std::fmt::Write as _;
 
@@ -9,16 +9,16 @@ const BAD: Style = AnsiColor::Red.on_default().effects(Effects::BOLD);
 const ODD: Style = AnsiColor::Yellow.on_default().effects(Effects::BOLD);
 const HEAD: Style = AnsiColor::Cyan.on_default();
 
-/// Columns of the word at the head of a row.
+/// Width of row labels, in columns.
 const WORD: usize = 8;
 
-/// Whether a terminal is to have them: <https://no-color.org>.
+/// True if the environment allows colours (<https://no-color.org>).
 pub fn are_wanted() -> bool {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !is_set("NO_COLOR") && std::env::var_os("TERM").is_none_or(|terminal| terminal != "dumb")
 }
 
-/// A message with colours.
+/// Returns a message with colours.
 pub fn painted(level: &str, before: &str, message: &str) -> String {
     let mut out = match level {
         "error" => wrapped(BAD, before),
@@ -37,7 +37,7 @@ pub fn painted(level: &str, before: &str, message: &str) -> String {
     out
 }
 
-/// A line of a result.
+/// Returns a line of a result with colours.
 fn row(line: &str) -> String {
     let (blank, text) = line.split_at(line.len() - line.trim_start().len());
     for (style, word) in
@@ -55,7 +55,7 @@ fn row(line: &str) -> String {
     }
 }
 
-/// Whether this is a word of letters, and blanks behind it.
+/// True for a lower-case word padded with blanks.
 fn is_head(word: &str) -> bool {
     let letters = word.trim_end();
     !letters.is_empty() && letters.chars().all(|c| c.is_ascii_lowercase())

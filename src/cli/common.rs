@@ -1,4 +1,4 @@
-//! The options of every verb that works for a while, and what several verbs do alike.
+//! Options and functions shared by commands.
 
 use super::exit::Failure;
 use super::log;
@@ -9,43 +9,43 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-/// When the program began.
+/// Start time of the program.
 static BEGIN: OnceLock<Instant> = OnceLock::new();
 
-/// The program begins.
+/// Records the start time.
 pub fn begin() {
     BEGIN.get_or_init(Instant::now);
 }
 
-/// How a verb works and what it says of it.
+/// General options.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "General")]
 pub struct Common {
-    /// Number of threads (default: all cores); the output does not depend on it
+    /// Number of threads (default: all cores); the result does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Print the report as JSON on standard output
     #[arg(long)]
     pub json: bool,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     pub quiet: bool,
-    /// Tell progress as lines of JSON on standard error, for programs: the stage, how much of it is done, and of how much (0:
-    /// not known). A run whose lines nobody reads any more ends
+    /// Report progress as JSON lines on standard error: stage, steps done, total steps (0 if unknown). The run stops when
+    /// the pipe is closed
     #[arg(long, value_name = "FORMAT")]
     pub progress: Option<ProgressFormat>,
-    /// Print all there is to say: every retry, every line of the check
+    /// Print every detail, such as all retries and all conditions of the check
     #[arg(short, long, conflicts_with = "quiet")]
     pub verbose: bool,
 }
 
-/// What is left of a run: files and folders that are there, with their sizes; time and memory.
+/// Outcome of a run: existing output files with their sizes, time and memory.
 pub fn ended(paths: &[&Path]) -> Ended {
     let seconds = BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64();
     Ended { files: written(paths), seconds, memory: peak_memory() }
 }
 
-/// Files and folders that are there, with their sizes.
+/// Existing files and folders with their sizes, in bytes.
 fn written(paths: &[&Path]) -> Vec<(String, u64)> {
     let size = |path: &Path| match path.metadata() {
         Ok(data) if data.is_dir() => {
@@ -57,7 +57,7 @@ fn written(paths: &[&Path]) -> Vec<(String, u64)> {
     paths.iter().filter_map(|path| Some((path.display().to_string(), size(path)?))).collect()
 }
 
-/// Most memory that the process has had in use, in bytes; none where the system does not tell.
+/// Peak memory of the process in bytes; `None` if the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -65,14 +65,14 @@ pub fn peak_memory() -> Option<u64> {
     Some(1024 * kilobytes)
 }
 
-/// As many threads as were asked for, or as there are cores.
+/// Thread pool of the requested size, or with one thread per core.
 pub fn thread_pool(threads: Option<NonZeroUsize>) -> Result<rayon::ThreadPool, Failure> {
-    // 0 lets rayon take as many as there are cores.
+    // For rayon, 0 means one thread per core.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, Into::into));
-    builder.build().map_err(|e| Failure::stage(format!("the threads cannot be started: {e}")))
+    builder.build().map_err(|e| Failure::stage(format!("threads cannot be started: {e}")))
 }
 
-/// Prints a result for people or, with `--json`, for programs.
+/// Prints a result as text or, with `--json`, as JSON.
 pub fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
     if !json {
         return log::answer(&text());

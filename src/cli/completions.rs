@@ -1,4 +1,4 @@
-//! `anastomesh completions`: what a shell needs to complete the command line, made from its definition.
+//! `anastomesh completions`: shell completions.
 
 use clap::Command;
 use clap_complete::Shell;
@@ -7,7 +7,7 @@ use super::exit::{Exit, Failure};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The shell
+    /// Shell
     #[arg(value_enum)]
     shell: Shell,
 }

@@ -1,6 +1,6 @@
-//! `--config PLAN.toml`: options from a file, and the plan that became of them beside the output.
+//! `--config PLAN.toml`: options from a file, and the resolved options beside the output.
 //!
-//! The file has the long names of options as keys. What is typed comes after what the file says, and wins.
+//! Keys are the long names of options. Command-line options take precedence.
 
 use std::ffi::{OsStr, OsString};
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use anastomesh_io::write_text;
 
 const OPTION: &str = "--config";
 
-/// The command line with what a file says put before what was typed; and the file.
+/// Command line with the options of the file inserted before the typed ones, and the path of the file.
 pub fn expanded(mut words: Vec<OsString>, definition: &Command) -> Result<(Vec<OsString>, Option<PathBuf>), Failure> {
     let is_option = |word: &OsString| word == OPTION || word.to_string_lossy().starts_with("--config=");
     let Some(at) = words.iter().position(is_option) else { return Ok((words, None)) };
@@ -27,7 +27,7 @@ pub fn expanded(mut words: Vec<OsString>, definition: &Command) -> Result<(Vec<O
     };
     let verb = words.iter().enumerate().skip(1).find_map(|(i, word)| Some((i, find(definition, word)?)));
     let Some((place, verb)) = verb else {
-        return Err(Failure::usage("--config goes with a verb: anastomesh mesh --config PLAN.toml …"));
+        return Err(Failure::usage("--config needs a command: anastomesh mesh --config PLAN.toml …"));
     };
     let options = options(&file, verb)?;
     words.splice(place + 1..=place, options);
@@ -38,7 +38,7 @@ fn find<'a>(definition: &'a Command, word: &OsStr) -> Option<&'a Command> {
     definition.get_subcommands().find(|verb| word == verb.get_name())
 }
 
-/// The options of a file, as they would be typed.
+/// Options of a file as command-line words.
 fn options(file: &Path, verb: &Command) -> Result<Vec<OsString>, Failure> {
     let path = file.display();
     let text = std::fs::read_to_string(file).map_err(|e| Failure::unreadable(file, &e))?;
@@ -47,16 +47,18 @@ fn options(file: &Path, verb: &Command) -> Result<Vec<OsString>, Failure> {
     for (key, value) in &table {
         if !verb.get_arguments().any(|arg| arg.get_long() == Some(key)) || key == "config" {
             let name = verb.get_name();
-            return Err(Failure::input(format!("{path}: '{key}' is no option of {name}; `{name} --help` lists them")));
+            return Err(Failure::input(format!(
+                "{path}: unknown option '{key}' of {name}; `{name} --help` lists all options"
+            )));
         }
         words.extend(typed(key, value).ok_or_else(|| {
-            Failure::input(format!("{path}: '{key}' has to be a number, text, true or false, or a list of these"))
+            Failure::input(format!("{path}: '{key}' must be a number, a string, a boolean, or a list of these"))
         })?);
     }
     Ok(words)
 }
 
-/// An option as it would be typed; none where a value is no option's.
+/// Option as command-line words; `None` if the type of the value is not supported.
 fn typed(key: &str, value: &Value) -> Option<Vec<OsString>> {
     let word = |value: &dyn std::fmt::Display| Some(vec![format!("--{key}={value}").into()]);
     match value {
@@ -73,7 +75,7 @@ fn typed(key: &str, value: &Value) -> Option<Vec<OsString>> {
     }
 }
 
-/// Writes all options of a verb with the values that they had, beside its output: defaults behind a `#`.
+/// Writes all options of a command with their values beside its output; defaults are commented out.
 pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failure> {
     let Ok(Some(output)) = matches.try_get_one::<PathBuf>("output") else { return Ok(()) };
     let mut name = output.file_stem().unwrap_or_default().to_owned();
@@ -82,7 +84,7 @@ pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failur
     let mut text = format!("# anastomesh {} {}\n", env!("CARGO_PKG_VERSION"), verb.get_name());
     for arg in verb.get_arguments() {
         let Some((key, value)) = resolved(arg, matches) else { continue };
-        // What nobody asked for stays as it is by itself; some of it may only be said together with something else.
+        // Defaults are comments, as some options are valid only together with others.
         let asked = matches.value_source(arg.get_id().as_str()) != Some(ValueSource::DefaultValue);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}{key} = {value}", if asked { "" } else { "# " });
@@ -90,7 +92,7 @@ pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failur
     write_text(&path, &text).map_err(|e| Failure::unwritable(&path, &e))
 }
 
-/// An option and its value, if it has one.
+/// Option and its value, if present.
 fn resolved<'a>(arg: &'a Arg, matches: &ArgMatches) -> Option<(&'a str, Value)> {
     let key = arg.get_long().filter(|key| !matches!(*key, "config" | "help" | "version"))?;
     let id = arg.get_id().as_str();
@@ -105,7 +107,7 @@ fn resolved<'a>(arg: &'a Arg, matches: &ArgMatches) -> Option<(&'a str, Value)> 
     }
 }
 
-/// A number where it is one.
+/// TOML value of a text: a number if possible.
 fn value(text: &str) -> Value {
     if let Ok(n) = text.parse::<i64>() {
         return Value::Integer(n);

@@ -1,4 +1,4 @@
-//! `anastomesh convert`: from one format to another of the same kind, and from a volume mesh to its boundary.
+//! `anastomesh convert`: conversion of file formats, and of volume meshes to their boundary.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -25,26 +25,25 @@ use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_m
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, tetrahedra};
 use anastomesh_network::directed;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele, .npyd), a surface (.stl, .ply, .obj, .off) or a network (.swc, .vtp, .vtk,
-    /// .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in)
+    /// Input file. Volume mesh: .vtu, .pvtu, .msh, .mesh, .ele, .npyd. Surface: .stl, .ply, .obj, .off. Network: .swc, .vtp,
+    /// .vtk, .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// What it becomes: a volume mesh the same in another format, or its boundary (.stl, .ply, .obj, .off, .glb, .3mf, .vtp); a
-    /// surface one of these; a network .vtp, .npyd or, if it is a tree, .swc
+    /// Output file. For a volume mesh: a mesh format, or a surface format for its boundary. For a surface: .stl, .ply, .obj,
+    /// .off, .glb, .3mf, .vtp. For a network: .vtp, .npyd or, for a tree, .swc
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
     format: FormatArgs,
-    /// Of a volume mesh's boundary take the wall alone (the patch 1), without inlets and outlets
+    /// Write only the wall (patch 1) of the boundary, without inlets and outlets
     #[arg(long)]
     no_caps: bool,
-    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
-    /// held as a whole
+    /// Memory limit for VTU files of `mesh`, which are then read block by block. Other files are loaded completely
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
     #[command(flatten)]
@@ -53,9 +52,9 @@ pub struct Args {
     common: Common,
 }
 
-/// A network has no wall and a surface no inside: other verbs make them.
+/// Conversion that needs meshing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{from} does not become {to} by being converted{}", instead(*.from, *.to))]
+#[error("{from} cannot be converted to {to}{}", instead(*.from, *.to))]
 struct Unlike {
     from: FileKind,
     to: FileKind,
@@ -63,14 +62,14 @@ struct Unlike {
 
 fn instead(from: FileKind, to: FileKind) -> &'static str {
     match (from, to) {
-        (FileKind::Network, FileKind::Mesh) => "; `anastomesh mesh` makes it",
-        (FileKind::Network, FileKind::Surface) => "; `anastomesh surface` makes it",
-        (FileKind::Surface, FileKind::Mesh) => "; `anastomesh tetrahedralize` fills it",
+        (FileKind::Network, FileKind::Mesh) => "; use `anastomesh mesh`",
+        (FileKind::Network, FileKind::Surface) => "; use `anastomesh surface`",
+        (FileKind::Surface, FileKind::Mesh) => "; use `anastomesh tetrahedralize`",
         _ => "",
     }
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output {
     program: &'static str,
@@ -80,7 +79,7 @@ struct Output {
     counts: Written,
 }
 
-/// How much was written.
+/// Size of the written data.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Written {
@@ -93,16 +92,14 @@ impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&match *self {
             Self::Mesh { points, tets, boundary_faces } => {
-                let [tets, points, faces] = [tets, points, boundary_faces].map(grouped);
-                row("mesh", &format!("{tets} tetrahedra, {points} points, {faces} boundary faces"))
+                let (points, faces) = (counted(points, "point"), counted(boundary_faces, "boundary face"));
+                row("mesh", &format!("{}, {points}, {faces}", tetrahedra(tets)))
             }
             Self::Surface { points, triangles } => {
-                let [points, triangles] = [points, triangles].map(grouped);
-                row("surface", &format!("{points} points, {triangles} triangles"))
+                row("surface", &format!("{}, {}", counted(points, "point"), counted(triangles, "triangle")))
             }
             Self::Network { nodes, edges } => {
-                let [nodes, edges] = [nodes, edges].map(grouped);
-                row("network", &format!("{nodes} nodes, {edges} edges"))
+                row("network", &format!("{}, {}", counted(nodes, "node"), counted(edges, "edge")))
             }
         })
     }
@@ -131,14 +128,14 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
-    /// What the output is to hold; makes sure that it can be written.
+    /// Kind of the output; checks that it can be written.
     fn target(&self, from: FileKind) -> Result<FileKind, Failure> {
         let path = &self.output;
-        // A .vtp holds a network or a surface, as what becomes of it asks.
+        // A .vtp file contains a network or a surface, depending on the input.
         let to = match FileKind::of(path, "convert") {
             _ if self.format.format.is_some() => FileKind::Mesh,
             _ if npy::is_folder(path) => from,
-            // Pictures and printers have formats that are not read.
+            // Some surface formats can only be written.
             Ok(FileKind::Network) | Err(_) if from != FileKind::Network => FileKind::Surface,
             found => found?,
         };
@@ -193,7 +190,7 @@ impl Args {
     }
 
     fn convert_network(&self) -> Result<Written, Failure> {
-        // Radii that nothing can be meshed with are converted as they are.
+        // Conversion accepts radii that are invalid for meshing.
         let options = NetworkOptions::default().any_radii(true);
         let file = read_network(&self.input, &options).map_err(|e| Failure::input(hint::of_file(&e)))?;
         let network = directed(&file.skeleton);

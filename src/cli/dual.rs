@@ -10,26 +10,26 @@ use super::log;
 use super::network::NetworkArgs;
 use crate::report::rows::row;
 use anastomesh_io::network::{NetworkArray, ensure_network_writable, write_network};
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::counted;
 use anastomesh_network::dual;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the network of both trees goes: .vtp, with the arrays `OriginalNode` and `Tree` (0 the first tree, 1 the
-    /// second, 2 the terminals that they share)
+    /// Output file with both trees: .vtp with the arrays `OriginalNode` and `Tree` (0 first tree, 1 second tree, 2 shared
+    /// terminals)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
-    /// Print what was grown as JSON on standard output
+    /// Print the report as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// What was grown.
+/// Report of the growth.
 #[derive(Serialize)]
 struct GrownDual {
     nodes: usize,
@@ -61,10 +61,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.json {
         print(true, &grown, String::new)?;
     } else if !args.quiet {
-        let [nodes, edges, shared] = [grown.nodes, grown.edges, grown.shared_terminals].map(grouped);
-        let network = row("network", &format!("{nodes} nodes, {edges} edges, {shared} shared terminals"));
+        let counts = [(grown.nodes, "node"), (grown.edges, "edge"), (grown.shared_terminals, "shared terminal")];
+        let network = row("network", &counts.map(|(count, what)| counted(count, what)).join(", "));
         let ended = ended(&[&args.output]).rows(&[]);
-        log::result(&format!("{network}{ended}the two trees run into each other: `anastomesh refine` parts them"));
+        log::result(&format!("{network}{ended}the two trees overlap: `anastomesh refine` moves them apart"));
     }
     Ok(Exit::Fine)
 }

@@ -1,4 +1,4 @@
-//! What the program says with its exit code.
+//! Exit codes and failures.
 
 use std::fmt;
 use std::path::Path;
@@ -9,9 +9,9 @@ use anastomesh_network::flow::NotConverged;
 /// The exit codes, as in `docs/meshing.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// All well.
+    /// Success.
     Fine,
-    /// Work done, but a gate is not met: the mesh is not valid.
+    /// The result was written, but validation failed.
     GateNotMet,
     /// The command line is wrong.
     Usage,
@@ -19,14 +19,14 @@ pub enum Exit {
     BadInput,
     /// A stage failed.
     StageFailed,
-    /// A fault of the program.
+    /// Internal error.
     Bug,
-    /// Somebody asked it to stop.
+    /// Stopped by a signal.
     Stopped,
 }
 
 impl Exit {
-    /// Its number.
+    /// Returns the number of the exit code.
     pub fn code(self) -> u8 {
         match self {
             Self::Fine => 0,
@@ -35,7 +35,7 @@ impl Exit {
             Self::BadInput => 3,
             Self::StageFailed => 4,
             Self::Bug => 70,
-            // As shells have it for what Ctrl-C ended.
+            // Convention of shells: 128 + SIGINT.
             Self::Stopped => 130,
         }
     }
@@ -47,12 +47,12 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// An error on its way to the person at the terminal: one message and the code to leave with.
+/// Error message and exit code.
 #[derive(Debug)]
 pub struct Failure {
-    /// How the program ends.
+    /// Exit code.
     pub exit: Exit,
-    /// What is wrong, where, and what to do.
+    /// Place, problem and remedy.
     pub message: String,
 }
 
@@ -63,35 +63,33 @@ impl From<NotConverged> for Failure {
 }
 
 impl Failure {
-    /// The input, or a path, is at fault.
+    /// Failure of the input or a path.
     pub fn input(message: impl Into<String>) -> Self {
         Self { exit: Exit::BadInput, message: message.into() }
     }
 
-    /// The output cannot be written.
+    /// Failure to write the output.
     pub fn unwritable(path: &Path, why: &dyn fmt::Display) -> Self {
         let path = path.display();
-        Self::input(format!(
-            "{path}: cannot be written: {why}; name a file in a folder that exists and can be written to"
-        ))
+        Self::input(format!("{path}: cannot be written: {why}; name a file in an existing, writable folder"))
     }
 
-    /// A file beside the input cannot be read.
+    /// Failure to read an additional file.
     pub fn unreadable(path: &Path, why: &dyn fmt::Display) -> Self {
         Self::input(format!("{}: cannot be read: {why}; check the path and its permissions", path.display()))
     }
 
-    /// A stage failed.
+    /// Failure of a stage.
     pub fn stage(message: impl Into<String>) -> Self {
         Self { exit: Exit::StageFailed, message: message.into() }
     }
 
-    /// Somebody asked to stop.
+    /// Stop on request.
     pub fn stopped(message: impl Into<String>) -> Self {
         Self { exit: Exit::Stopped, message: message.into() }
     }
 
-    /// The command line is wrong in a way that only the input shows.
+    /// Command-line error found after parsing.
     pub fn usage(message: impl Into<String>) -> Self {
         Self { exit: Exit::Usage, message: message.into() }
     }

@@ -1,4 +1,4 @@
-//! `anastomesh generate`: grows a network of vessels in an organ.
+//! `anastomesh generate`: growth of a vessel network in an organ.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -10,56 +10,55 @@ use super::exit::{Exit, Failure};
 use super::log;
 use crate::report::rows::row;
 use anastomesh_io::network::{NetworkArray, ensure_network_writable, ensure_tree_writable, write_network, write_tree};
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, grouped};
 use anastomesh_network::{BedParams, GenerateParams, Looped, Morphometry, Organ, RAT_KIDNEY, generate, looped};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Number of terminals (outlets); 29566 is a rat's kidney
+    /// Number of terminals (outlets); a rat kidney has 29566
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     terminals: u32,
-    /// What is filled with vessels
+    /// Shape to fill with vessels
     #[arg(long, value_enum, default_value_t = OrganArg::Kidney)]
     organ: OrganArg,
-    /// Seed of the random numbers; the same seed gives the same network
+    /// Seed of the random numbers; equal seeds give equal networks
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Mean radius of the terminals, in um (default: 10.08, as in a rat's kidney; 4 beside capillaries)
+    /// Mean radius of the terminals, in um (default: 10.08, as in a rat kidney; 4 with capillaries)
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     terminal_radius: Option<f64>,
-    /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for a kidney, as measured, and 3 for an ellipsoid)
+    /// Exponent p of Murray's law r0^p = r1^p + r2^p (default: 3.2 for the kidney, as measured; 3 for the ellipsoid)
     #[arg(long, value_name = "P", allow_negative_numbers = true)]
     exponent: Option<f64>,
-    /// Longest extent of the organ, in um (default: terminals as dense as in a rat's kidney)
+    /// Longest extent of the organ, in um (default: terminal density of a rat kidney)
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     size: Option<f64>,
-    /// Grow veins beside the arteries, with as many terminals, and a looped bed of capillaries between the two (needs an
-    /// ellipsoid; some 38 vessels for each terminal)
+    /// Also grow veins and a capillary bed with loops, about 38 vessels per terminal. Needs --organ ellipsoid
     #[arg(long)]
     capillaries: bool,
-    /// Mean radius of the capillaries, in um; by default as measured in the cortex of mice
+    /// Mean radius of the capillaries, in um; the default was measured in mouse cortex
     #[arg(long, value_name = "R", requires = "capillaries", default_value_t = BedParams::default().radius, allow_negative_numbers = true)]
     capillary_radius: f64,
     /// Mean length of the capillaries, in um; the default is an assumption, not a measurement
     #[arg(long, value_name = "L", requires = "capillaries", default_value_t = BedParams::default().length, allow_negative_numbers = true)]
     capillary_length: f64,
-    /// Where the network goes, in um: .vtp, or .swc (node radii only)
+    /// Output file, in um: .vtp, or .swc (node radii only)
     #[arg(short, long, value_name = "NETWORK")]
     output: PathBuf,
     #[command(flatten)]
     common: Common,
 }
 
-/// What can be filled.
+/// Shapes to fill.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum OrganArg {
-    /// A rat's: dense cortex, thin medulla, a hilum where the artery enters
+    /// Rat kidney: dense cortex, thin medulla, a hilum where the artery enters
     Kidney,
-    /// Filled evenly
+    /// Uniform density
     Ellipsoid,
 }
 
-/// What was grown.
+/// Report of the growth.
 #[derive(Serialize)]
 struct Grown<'a> {
     program: &'static str,
@@ -92,7 +91,7 @@ impl Args {
 /// Radius of the thinnest arteries and veins beside capillaries, um.
 const ARTERIOLE: f64 = 4.0;
 
-/// What was grown with capillaries.
+/// Report of a growth with capillaries.
 #[derive(Serialize)]
 struct GrownLooped<'a> {
     program: &'static str,
@@ -119,9 +118,9 @@ fn run_looped(args: &Args) -> Result<Exit, Failure> {
         let grown = GrownLooped { program, parameters: &params, capillaries: &bed, nodes, edges, joined, open };
         print(true, &grown, String::new)?;
     } else if !args.common.quiet {
-        let [nodes, edges, joined, open] = [nodes, edges, joined, open].map(grouped);
-        let network = row("network", &format!("{nodes} nodes, {edges} edges"));
-        let ends = row("ends", &format!("{joined} of arteries and veins are joined to capillaries, {open} are open"));
+        let network = row("network", &format!("{}, {}", counted(nodes, "node"), counted(edges, "edge")));
+        let (joined, open) = (counted(joined, "artery or vein end"), grouped(open));
+        let ends = row("ends", &format!("{joined} connected to capillaries, {open} open"));
         log::result(&format!("{network}{ends}{}", ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
@@ -158,17 +157,18 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Fine)
 }
 
-/// For people: what was grown, and the orders of vessels beside those of a rat's kidney.
+/// Text report: sizes, and vessel orders compared with a rat kidney.
 fn text(grown: &Grown) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
-    let [nodes, edges, terminals] = [grown.nodes, grown.edges, grown.parameters.terminals as usize].map(grouped);
-    let sizes = format!("{nodes} nodes, {edges} edges, {terminals} terminals");
+    let terminals = grown.parameters.terminals as usize;
+    let sizes = [(grown.nodes, "node"), (grown.edges, "edge"), (terminals, "terminal")];
+    let sizes = sizes.map(|(count, what)| counted(count, what)).join(", ");
     let (radius, size) = (grown.root_radius, grouped(grown.size.round() as usize));
-    out += &row("network", &format!("{sizes}; a root of radius {radius:.1} µm in an organ {size} µm long"));
+    out += &row("network", &format!("{sizes}; root radius {radius:.1} µm, organ length {size} µm"));
     let _ = writeln!(
         out,
-        "order    vessels         radius/µm         length/µm   (mean +- deviation; below: measured in rats)"
+        "order    vessels         radius/µm         length/µm   (mean +- standard deviation; below: measured in rats)"
     );
     for (order, figures) in grown.morphometry.orders.iter().enumerate() {
         let f = figures;

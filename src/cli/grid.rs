@@ -1,39 +1,39 @@
-//! How VTK's files are written: arguments of every verb that writes some.
+//! Options of VTK files, shared by commands that write them.
 
 use anastomesh_io::volume::GridOptions;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = "VTU and PVTU")]
 pub struct GridArgs {
-    /// Round coordinates to 32 bits: files are smaller, and what was checked are the exact ones
+    /// Round coordinates to 32 bits for smaller files; the check uses the exact coordinates
     #[arg(long)]
     float32: bool,
-    /// Cells of the grid; with `tets` the boundary goes into a file of its own, `MESH_boundary.vtp`
+    /// Cells of the grid; with `tets`, the boundary is written to `MESH_boundary.vtp`
     #[arg(long, value_enum, default_value_t = Cells::All)]
     cells: Cells,
-    /// How arrays stand in the file
+    /// Compression of arrays
     #[arg(long, value_enum, default_value_t = Compress::Zlib)]
     compress: Compress,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Cells {
-    /// Tetrahedra, then the triangles of the boundary
+    /// Tetrahedra and boundary triangles
     All,
-    /// Tetrahedra alone
+    /// Tetrahedra only
     Tets,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Compress {
-    /// Compressed with zlib
+    /// Zlib
     Zlib,
-    /// As they are
+    /// No compression
     None,
 }
 
 impl GridArgs {
-    /// The options of a writer.
+    /// Options of the writer.
     pub fn options(self) -> GridOptions {
         GridOptions::default()
             .float32(self.float32)

@@ -1,12 +1,12 @@
-//! What `-h` shows: a screen of what is asked for most, and which groups `--help` has beside it.
+//! Short help (`-h`): the most common options, and a list of the other groups.
 
 use clap::{Arg, ArgAction, Command};
 
-/// Groups that are in the short help of one verb only, if of any.
+/// Groups that appear in the short help of at most one command, with that command.
 const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
-/// Options that few ask for.
+/// Options that only the long help lists.
 const RARE: [&str; 42] = [
     "allow-displaced",
     "angle-rate",
@@ -52,7 +52,7 @@ const RARE: [&str; 42] = [
     "version",
 ];
 
-/// The verbs with a short help that is a screen.
+/// Shortens the short help of all commands.
 pub fn shortened(command: Command) -> Command {
     let names: Vec<String> = command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
     names.into_iter().fold(command, |command, name| command.mut_subcommand(name, of_verb))
@@ -71,9 +71,9 @@ fn of_verb(verb: Command) -> Command {
             more.push(heading);
         }
     }
-    let all = format!("`anastomesh {name} --help` says more of each option");
-    let text = if more.is_empty() { all } else { format!("{all}, and has more of them: {}", more.join(", ")) };
-    let long = "docs/options.md lists all options of all verbs with their defaults";
+    let all = format!("`anastomesh {name} --help` shows all options");
+    let text = if more.is_empty() { all } else { format!("{all}, including the groups {}", more.join(", ")) };
+    let long = "docs/options.md lists all options of all commands with their defaults";
     verb.mut_args(|arg| if is_rare(&arg) { arg.hide_short_help(true) } else { arg })
         .after_help(text)
         .after_long_help(long)

@@ -1,14 +1,32 @@
-//! Options that help with an error or a note of the library, which names none.
+//! Command-line options that remedy errors and notes of the library.
 
 use crate::pipeline::{RunError, StoreError, TooLarge};
-use anastomesh_io::network::{NetworkFileError, NetworkNote};
+use anastomesh_io::faults::FileError;
+use anastomesh_io::network::{NetworkFileError, NetworkFormat, NetworkNote};
+use anastomesh_io::surface::SurfaceFormat;
+use std::path::Path;
 
-/// Error of a network file, with the option that helps.
+/// Error of a network file, with the remedy.
 pub fn of_file(error: &NetworkFileError) -> String {
-    format!("{error}{}", if error.lacks_radii() { " with --radius-array" } else { "" })
+    format!("{error}{}", if error.lacks_radii() { " (--radius-array)" } else { instead_of_network(error) })
 }
 
-/// Note on a network file, with the option that helps.
+/// Remedy for a surface that is given as a network.
+fn instead_of_network(error: &NetworkFileError) -> &'static str {
+    match error {
+        NetworkFileError::File(FileError::UnknownFormat { path, .. }) if SurfaceFormat::of(path).is_ok() => {
+            "; to mesh a surface, use `anastomesh tetrahedralize`"
+        }
+        _ => "",
+    }
+}
+
+/// Remedy for a network that is given as a surface.
+pub fn instead_of_surface(path: &Path) -> &'static str {
+    if NetworkFormat::of(path).is_ok() { "; to mesh a network, use `anastomesh mesh`" } else { "" }
+}
+
+/// Note on a network file, with the option that changes it.
 pub fn of_note(note: &NetworkNote) -> String {
     let hint = match note {
         NetworkNote::NotUsed { .. } => " (choose with --radius-array)",
@@ -18,20 +36,20 @@ pub fn of_note(note: &NetworkNote) -> String {
     format!("{note}{hint}")
 }
 
-/// Error of a store of blocks, with the option that helps.
+/// Error of a block store, with the option that helps.
 pub fn of_store(error: &StoreError) -> String {
     let hint = match error {
-        StoreError::Missing { .. } => ", or give --make-missing to have this run make what is not there",
-        StoreError::Damaged { .. } => ", or give --make-missing to have this run make them",
-        StoreError::Other { .. } => ", or give --restart to throw its blocks away",
+        StoreError::Missing { .. } => ", or give --make-missing to make the rest in this run",
+        StoreError::Damaged { .. } => ", or give --make-missing to make them in this run",
+        StoreError::Other { .. } => ", or give --restart to delete its blocks",
         StoreError::Write { .. } => " (--work-dir)",
-        StoreError::Read(_) => ", or start anew with --restart",
+        StoreError::Read(_) => ", or start again with --restart",
         _ => "",
     };
     format!("{error}{hint}")
 }
 
-/// Refusal of a run that is too large, with the options that help.
+/// Error of a run that exceeds a limit, with the options that help.
 pub fn of_size(error: &TooLarge) -> String {
     let hint = match error {
         TooLarge::Block { .. } => " (--memory, --rho)",

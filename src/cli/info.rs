@@ -1,4 +1,4 @@
-//! `anastomesh info`: what a network holds.
+//! `anastomesh info`: properties of a network.
 
 use super::common::print;
 use super::exit::{Exit, Failure};
@@ -10,12 +10,12 @@ use crate::report::info::NetworkInfo;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Print JSON
+    /// Print the report as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Reads a network and prints what it holds.
+/// Reads a network and prints its properties.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let network = args.network.read()?;
     let inlets = network.inlets()?;

@@ -1,4 +1,4 @@
-//! What a file holds: a volume mesh, a surface or a network; and how a volume mesh of any size is opened.
+//! Kinds of files (volume mesh, surface, network), and opening of volume meshes of any size.
 
 use std::fmt;
 use std::path::Path;
@@ -16,10 +16,10 @@ use anastomesh_mesh::adjacency::boundary_faces;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 
-/// Bytes of memory that a mesh takes for each byte of its file while it is held as a whole.
+/// Memory of a loaded mesh per byte of its file, in bytes.
 const MEMORY_PER_BYTE: u64 = 4;
 
-/// What a file holds.
+/// Kind of the contents of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FileKind {
@@ -39,12 +39,12 @@ impl fmt::Display for FileKind {
 }
 
 impl FileKind {
-    /// What a file to be read by `verb` holds, by its extension.
+    /// Determines the kind of a file by its extension; `verb` is the command that reads it.
     pub fn of(path: &Path, verb: &str) -> Result<Self, Failure> {
         if SurfaceFormat::of(path).is_ok() {
             return Ok(Self::Surface);
         }
-        // Of a folder of arrays these tell.
+        // A folder of arrays is a mesh if it contains tetrahedra.
         if npy::holds(path, "tets") {
             return Ok(Self::Mesh);
         }
@@ -53,7 +53,7 @@ impl FileKind {
         }
         MeshFormat::of(path).map(|_| Self::Mesh).map_err(|_| {
             Failure::input(format!(
-                "{}: no extension of a volume mesh, a surface or a network; `{verb} --help` lists them",
+                "{}: unrecognised extension; `{verb} --help` lists the extensions of meshes, surfaces and networks",
                 path.display()
             ))
         })
@@ -62,14 +62,14 @@ impl FileKind {
 
 /// A volume mesh in a file.
 pub enum OpenedMesh {
-    /// Too large to be held: read by its blocks.
+    /// Large mesh that is read block by block.
     Pieces(VtuPieces),
-    /// Held.
+    /// Loaded mesh.
     Whole(MeshFile),
 }
 
 impl OpenedMesh {
-    /// Opens a file: a VTU of the verb mesh by its blocks where it would need more than `memory`, all others as wholes.
+    /// Opens a file: a VTU file of `mesh` block by block if it would exceed `memory`; others are loaded.
     pub fn open(path: &Path, memory: u64) -> Result<Self, Failure> {
         if let Some(pieces) = in_pieces(path, memory)? {
             return Ok(Self::Pieces(pieces));
@@ -77,7 +77,7 @@ impl OpenedMesh {
         read_mesh(path).map(Self::Whole).map_err(|e| Failure::input(e.to_string()))
     }
 
-    /// As wall, what no file labels.
+    /// Labels the boundary of an unlabelled mesh as wall.
     pub fn label_boundary(&mut self) {
         if let Self::Whole(MeshFile { volume, labelled: false, .. }) = self {
             volume.boundary = boundary_faces(&volume.mesh);
@@ -93,7 +93,7 @@ impl OpenedMesh {
         }
     }
 
-    /// What its file says beside it.
+    /// Notes in the file.
     pub fn notes(&self) -> &MeshNotes {
         match self {
             Self::Pieces(pieces) => pieces.notes(),
@@ -102,7 +102,7 @@ impl OpenedMesh {
     }
 }
 
-/// A file that is too large to be held; none when it is not, or has to be.
+/// Opens a large file block by block; `None` if it is small or must be loaded.
 fn in_pieces(input: &Path, memory: u64) -> Result<Option<VtuPieces>, Failure> {
     let length = std::fs::metadata(input).map_or(0, |data| data.len());
     if length.saturating_mul(MEMORY_PER_BYTE) <= memory || MeshFormat::of(input).ok() != Some(MeshFormat::Vtu) {
@@ -118,31 +118,30 @@ fn in_pieces(input: &Path, memory: u64) -> Result<Option<VtuPieces>, Failure> {
     }
 }
 
-/// Says that a mesh takes more memory than it might.
+/// Warns that a mesh is loaded although it may exceed the memory limit.
 pub fn held(path: &Path, why: &dyn fmt::Display) {
-    log::warning(&format!("{} is held as a whole, which may need more than --memory: {why}", path.display()));
+    log::warning(&format!("{} is loaded completely, which may exceed --memory: {why}", path.display()));
 }
 
-/// A file that breaks off, or is none.
+/// Failure of reading a truncated or invalid file.
 pub fn unreadable(path: &Path, why: &dyn fmt::Display) -> Failure {
-    Failure::input(format!("{}: cannot be read: {why}; write or copy it again", path.display()))
+    Failure::input(format!("{}: cannot be read: {why}; copy it again", path.display()))
 }
 
-/// The mesh that a run has left in a work directory; none where the path is none.
+/// Mesh in a work directory; `None` if the path is not one.
 pub fn left_in(folder: &Path) -> Result<Option<LeftWhole>, Failure> {
     if !LeftWhole::may_be_in(folder) {
         return Ok(None);
     }
     LeftWhole::open(folder).map(Some).ok_or_else(|| {
         Failure::input(format!(
-            "{}: no run has come to the end of its blocks in this work directory; start the command that began it again, \
-             which goes on there",
+            "{}: the run in this work directory is not finished; run its command again to continue",
             folder.display()
         ))
     })
 }
 
-/// A mesh of nothing but this boundary.
+/// Mesh without tetrahedra that has this boundary.
 pub fn boundary_of(surface: TriMesh) -> VolumeMesh {
     let TriMesh { points, triangles } = surface;
     VolumeMesh {

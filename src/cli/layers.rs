@@ -1,24 +1,25 @@
-//! Layers along walls: arguments of every verb that makes them.
+//! Boundary layer options, shared by commands that make volume meshes.
 
 use super::exit::Failure;
+use super::numbers::number;
 use anastomesh_tet::Layers;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Layers")]
 pub struct LayerArgs {
-    /// Layers of thin tetrahedra along the wall, where wall shear and what is carried change fast
+    /// Number of boundary layers: thin tetrahedra along the wall
     #[arg(long, value_name = "N")]
     pub layers: Option<u32>,
-    /// How much thicker each layer is than the one before it, from the wall on
-    #[arg(long, value_name = "G", default_value_t = Layers::default().growth, requires = "layers", allow_negative_numbers = true)]
+    /// Ratio of the thickness of each layer to that of the previous one, from the wall inwards
+    #[arg(long, value_name = "G", default_value_t = Layers::default().growth, value_parser = number, requires = "layers", allow_negative_numbers = true)]
     pub layer_growth: f64,
-    /// Thickness of all layers together, as a share of the radius (of surfaces that are no vessels: of half the way across)
-    #[arg(long, value_name = "T", default_value_t = Layers::default().thickness, requires = "layers", allow_negative_numbers = true)]
+    /// Total thickness of all layers as a fraction of the vessel radius; for other surfaces, of the local half width
+    #[arg(long, value_name = "T", default_value_t = Layers::default().thickness, value_parser = number, requires = "layers", allow_negative_numbers = true)]
     pub layer_thickness: f64,
 }
 
 impl LayerArgs {
-    /// What is asked for, as it is typed.
+    /// Options as command-line text.
     pub fn typed(&self) -> String {
         let with = |n| {
             format!(" --layers {n} --layer-growth {} --layer-thickness {}", self.layer_growth, self.layer_thickness)
@@ -26,7 +27,7 @@ impl LayerArgs {
         self.layers.map_or_else(String::new, with)
     }
 
-    /// What is asked for.
+    /// Requested layers.
     pub fn asked(&self) -> Result<Option<Layers>, Failure> {
         let Some(count) = self.layers else { return Ok(None) };
         let layers = Layers::default().count(count).growth(self.layer_growth).thickness(self.layer_thickness);

@@ -1,4 +1,4 @@
-//! Memory and disk: how much may be used, how much is there, and where finished blocks go.
+//! Limits of memory and disk space, and the place of finished blocks.
 
 use std::path::{Path, PathBuf};
 
@@ -30,33 +30,33 @@ fn thousands(number: &str, power: i32) -> Result<u64, String> {
 }
 
 fn scaled(number: &str, unit: f64) -> Result<u64, String> {
-    let value: f64 = number.parse().map_err(|_| format!("'{number}' is no number"))?;
+    let value: f64 = number.parse().map_err(|_| format!("'{number}' is not a number"))?;
     if value > 0.0 && value * unit < 2_f64.powi(62) {
         Ok((value * unit) as u64)
     } else {
-        Err("the size must be above 0 and can be no larger than an exbibyte".into())
+        Err("the size must be above 0 and at most 4 EiB".into())
     }
 }
 
-/// Where finished blocks are to be kept.
+/// Place of finished blocks.
 #[derive(Clone, Debug)]
 pub enum BlockPlace {
-    /// In memory: they are few.
+    /// In memory, if they are few.
     Memory,
-    /// In a file without a name in this folder.
+    /// In an anonymous temporary file in this folder.
     Passing(PathBuf),
     /// In a work directory.
     Folder(PathBuf),
 }
 
-/// Bytes of memory per tetrahedron of a mesh that is gathered to be written.
+/// Memory per tetrahedron of a mesh that is collected before writing, in bytes.
 const GATHERED_PER_TET: f64 = 60.0;
 
-/// Finished blocks stay in memory when they take less than this share of what is allowed.
+/// Finished blocks stay in memory if they need less than this fraction (1/N) of the limit.
 const KEPT_IN_MEMORY: u64 = 8;
 
 impl BlockPlace {
-    /// Opens memory for what is small, else a file beside the output.
+    /// Opens a store in memory for small meshes, or else a temporary file beside the output.
     pub fn beside(output: &Path, estimate: &Estimate, memory: u64) -> Result<(Self, Store), Failure> {
         if estimate.stored_bytes < memory / KEPT_IN_MEMORY {
             return Ok((Self::Memory, Store::in_memory()));
@@ -74,7 +74,7 @@ impl BlockPlace {
     }
 }
 
-/// The folder that a file is in.
+/// Parent folder of a file.
 pub fn folder_of(file: &Path) -> PathBuf {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
@@ -82,14 +82,13 @@ pub fn folder_of(file: &Path) -> PathBuf {
     }
 }
 
-/// Refuses blocks that the memory that is allowed cannot hold.
+/// Checks that the largest block fits into the memory limit.
 pub fn block_fits(estimate: &Estimate, plan: &MeshPlan) -> Result<(), TooLarge> {
     let (estimate, memory) = (*estimate, plan.memory);
     if estimate.largest_block_bytes > memory { Err(TooLarge::Block { estimate, memory }) } else { Ok(()) }
 }
 
-/// Refuses what the memory that is allowed, or the room on the disks, cannot hold. `kept`: bytes of blocks that an earlier run
-/// left at their place.
+/// Checks that a run fits into the memory limit and the disks. `kept`: bytes of blocks of an earlier run.
 pub fn fits(
     estimate: &Estimate,
     plan: &MeshPlan,
@@ -120,7 +119,7 @@ pub fn fits(
     for (folder, bytes, place) in
         [(place.folder(), stored, "the disk of the work directory"), (Some(&*target), written, "the disk of the mesh")]
     {
-        // Where the system does not tell, writing will.
+        // If the free space is unknown, writing reports the error.
         let Some(free) = folder.and_then(|folder| fs4::available_space(folder).ok()) else { continue };
         if bytes > free {
             return Err(TooLarge::Disk { estimate, bytes, free, place });
@@ -136,7 +135,7 @@ fn same_disk(a: &Path, b: &Path) -> bool {
     device(a) == device(b)
 }
 
-/// Where the system does not tell, one disk for both is the safe guess.
+/// Assumes one disk for both, which is the safe case.
 #[cfg(not(unix))]
 fn same_disk(_: &Path, _: &Path) -> bool {
     true

@@ -1,4 +1,4 @@
-//! What is said while a verb runs: lines for people, or with `--log-format json` an object on each line.
+//! Messages: text lines, or JSON objects with `--log-format json`.
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write as _};
@@ -7,26 +7,26 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::colours::{self, painted};
 use super::exit::Failure;
 
-/// Whether programs listen: known before any verb runs, and the same until the end.
+/// True if messages are JSON. Set before a command runs.
 static AS_JSON: AtomicBool = AtomicBool::new(false);
 
-/// How lines are written.
+/// Format of messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum LogFormat {
-    /// For people
+    /// Text
     #[default]
     Text,
-    /// A JSON object on each line: `level` (note, warning, result, error or progress) and `message`, or what is done
+    /// One JSON object per line with `level` (note, warning, result, error or progress) and `message` or the progress
     Json,
 }
 
 impl LogFormat {
-    /// Writes so from now on.
+    /// Selects this format.
     pub fn set(self) {
         AS_JSON.store(self == Self::Json, Ordering::Relaxed);
     }
 
-    /// What words ask for that may not be a command line at all: what is wrong with them has to be said, too.
+    /// Format requested by command-line words. They may be invalid; errors about them use the format.
     pub fn of_words(words: &[OsString]) -> Self {
         let word = |i: usize| words.get(i).map(|word| word.to_string_lossy());
         let asks = |i: usize| match word(i).as_deref() {
@@ -38,38 +38,38 @@ impl LogFormat {
     }
 }
 
-/// Whether programs listen.
+/// True if messages are JSON.
 pub fn is_json() -> bool {
     AS_JSON.load(Ordering::Relaxed)
 }
 
-/// Something that a person may want to know.
+/// Prints a note.
 pub fn note(message: &str) {
     said("note", "", message);
 }
 
-/// Something odd about the input, or that goes another way than asked for.
+/// Prints a warning.
 pub fn warning(message: &str) {
     said("warning", "warning: ", message);
 }
 
-/// What was done.
+/// Prints a result.
 pub fn result(message: &str) {
     said("result", "", message);
 }
 
-/// Why it ends.
+/// Prints an error.
 pub fn error(message: &str) {
     said("error", "anastomesh: ", message);
 }
 
-/// What was asked for, on standard output: an answer that is not the report of `--json`.
+/// Prints a text result on standard output.
 pub fn answer(message: &str) -> Result<(), Failure> {
     let line = line("result", "", message, io::stdout().is_terminal());
     print_bytes(format!("{line}\n").as_bytes())
 }
 
-/// A line of progress.
+/// Returns a progress line.
 pub fn progress(stage: &str, done: u64, total: u64) -> String {
     let mut line = serde_json::json!({ "progress": { "stage": stage, "done": done, "total": total } });
     if is_json() {

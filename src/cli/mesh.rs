@@ -1,4 +1,4 @@
-//! `anastomesh mesh`: from a network to a volume mesh.
+//! `anastomesh mesh`: volume mesh of a network.
 
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,7 @@ use super::layers::LayerArgs;
 use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;
+use super::numbers::number;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -37,6 +38,7 @@ use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::Skeleton;
@@ -45,27 +47,24 @@ use anastomesh_skeleton::Skeleton;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the mesh goes: .vtu, .pvtu (pieces in a folder beside it), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2, text),
-    /// .mesh (Medit), .foam (a case for `OpenFOAM`, a folder), .svmesh (the mesh-complete folder of `SimVascular`), .ele
-    /// (TetGen's family of files), or .npyd (a folder of `NumPy`'s arrays)
+    /// Output file: .vtu, .pvtu (with a folder of pieces), .msh (Gmsh 4.1), .msh2 (Gmsh 2.2), .mesh (Medit), .foam
+    /// (`OpenFOAM` case), .svmesh (`SimVascular` mesh-complete folder), .ele (TetGen files), or .npyd (folder of `NumPy` arrays)
     #[arg(short, long, value_name = "MESH", help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
     format: FormatArgs,
     #[command(flatten)]
     blocks: BlockArgs,
-    /// How much longer edges are on the axes of vessels than at the wall: 0.5 to 4 (default: 1; with `--stretch S` and no
-    /// layers, √S up to 2)
-    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    /// Ratio of edge lengths on the axis to those at the wall: 0.5 to 4 (default: 1; with `--stretch S` and no layers,
+    /// √S up to 2)
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, value_parser = number)]
     core: Option<f64>,
     #[command(flatten)]
     layers: LayerArgs,
-    /// How blocks meet where vessels are cut: disc, in one pass, every block ending in discs that the vessel alone gives;
-    /// woven, each connector between the ends of its two clusters, joints smoothed, the whole mesh in memory; none, no
-    /// vessel is cut
+    /// Joint style where vessels are cut
     #[arg(long, help_heading = "Run", value_enum, default_value_t = JointArg::Disc)]
     joint: JointArg,
-    /// Leave woven joints as the blocks have them instead of smoothing across them
+    /// Do not smooth woven joints
     #[arg(long, help_heading = "Run")]
     frozen_joints: bool,
     #[command(flatten)]
@@ -73,25 +72,25 @@ pub struct Args {
     /// Write the refined network
     #[arg(long, help_heading = "Run", value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
-    /// Node that is an inlet, as the file calls it (where it has no names, counted from 0); may be given several times
-    /// (default: the file's own roots, else in each component the terminal of largest radius)
+    /// Inlet node, by its name or number in the file; repeatable (default: the roots of the file, or else the widest
+    /// terminal of each component)
     #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
-    /// How far the meshed axis may be from the given one, in radii: more is exit code 1 (default: 1 in a network whose vessels
-    /// are polylines, but where an overlap demands more; no bound in others)
-    #[arg(long, help_heading = "Run", value_name = "R")]
+    /// Maximum distance of the meshed axis from the input, in radii; exit code 1 if exceeded (default: 1 for measured
+    /// networks except at overlaps, no limit for others)
+    #[arg(long, help_heading = "Run", value_name = "R", value_parser = number)]
     max_displacement: Option<f64>,
-    /// Say so where the axis is further off, and exit as if it were not
+    /// Warn instead of failing when the axis exceeds the limit
     #[arg(long, help_heading = "Run")]
     allow_displaced: bool,
-    /// Folder for the inputs of blocks that fail (default: MESH with `.failed` appended)
+    /// Folder for the inputs of failed blocks (default: MESH with `.failed` appended)
     #[arg(long, help_heading = "Run", value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// What VTU, PVTU, MSH and .npyd say of each place: radius and distance along the branch at points; branch, generation, strahler, node
-    /// (the nearer one) and ratio (the cell's radius ratio) in cells; several with commas between them
+    /// Data arrays to write, comma-separated. Point data: radius, distance (along the branch). Cell data: branch, generation,
+    /// strahler, node (nearest), ratio (radius ratio). Formats: VTU, PVTU, MSH and .npyd
     #[arg(long, help_heading = "Run", value_name = "DATA", value_delimiter = ',', value_parser = datum)]
     data: Vec<Datum>,
-    /// Say what it would take (blocks, tetrahedra, time, memory, disk), and mesh nothing
+    /// Print an estimate of blocks, tetrahedra, time, memory and disk space, without meshing
     #[arg(long, help_heading = "Run")]
     dry_run: bool,
     #[command(flatten)]
@@ -110,20 +109,23 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum JointArg {
+    /// Blocks end in planar discs and are meshed independently
     Disc,
+    /// Connectors are fitted to the ends of meshed clusters and joints are smoothed, with the whole mesh in memory
     Woven,
+    /// No vessel is cut
     None,
 }
 
-/// How much longer edges are on axes than at walls, at most, unless it is asked for.
+/// Maximum default ratio of edge lengths on the axis to those at the wall.
 const COARSEST_CORE: f64 = 2.0;
 
 fn datum(name: &str) -> Result<Datum, String> {
     let known = || Datum::ALL.map(Datum::name).join(", ");
-    Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("what is known is {}", known()))
+    Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("known arrays: {}", known()))
 }
 
-/// What is known of a mesh that is written.
+/// Facts about a written mesh.
 struct Found<'a> {
     mesh: &'a dyn MeshSource,
     network: &'a Skeleton,
@@ -132,7 +134,7 @@ struct Found<'a> {
     caps: Option<&'a Caps>,
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
@@ -150,16 +152,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let plan = args.plan()?;
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     if plan.smooths_joints() && args.work.dir.is_some() {
-        return Err(Failure::usage(
-            "--work-dir cannot keep joints that are smoothed: give --joint disc or --frozen-joints",
-        ));
+        return Err(Failure::usage("--work-dir cannot store smoothed joints: give --joint disc or --frozen-joints"));
     }
     let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
     if !args.data.is_empty() && !format.holds_values() {
-        return Err(Failure::usage(
-            "--data is for .vtu, .pvtu, .msh, .msh2 and .npyd; the other formats have no place for it",
-        ));
+        return Err(Failure::usage("--data is not supported by this format: use .vtu, .pvtu, .msh, .msh2 or .npyd"));
     }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
@@ -187,7 +185,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         print(args.common.json, &found, || forecast(&found, pool.current_num_threads()))?;
         return Ok(Exit::Fine);
     }
-    // Blocks are kept as soon as they are done.
+    // From here on finished blocks are stored.
     stop.keep();
     if let Some(dir) = &args.work.dir {
         work::note(dir, &bars);
@@ -221,13 +219,12 @@ impl Args {
         })
     }
 
-    /// Where edges are longer along vessels than across, the core need not be fine; with layers linear elements are meant, which
-    /// need it for the flow.
+    /// Default of `--core`. Stretched meshes need no fine core; with layers, linear elements resolve the flow only with one.
     fn usual_core(&self) -> f64 {
         if self.layers.layers.is_some() { 1.0 } else { self.blocks.stretch.max(1.0).sqrt().min(COARSEST_CORE) }
     }
 
-    /// The network, read and prepared.
+    /// Reads and prepares the network.
     fn prepared(&self, mut plan: MeshPlan) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
         let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
@@ -243,7 +240,7 @@ impl Args {
         run.prepared().map_err(|e| self.explain_alone(e))
     }
 
-    /// A share of the blocks, of which nothing but the network has to be known.
+    /// Makes the blocks of a shard.
     fn run_shard(&self, work: &WorkDir, shard: Shard, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
         let plan = run.plan.clone();
         let fits = |estimate: &_| limits::block_fits(estimate, &plan);
@@ -251,7 +248,7 @@ impl Args {
         work::told(shard, &made, self.common.json, self.common.quiet)
     }
 
-    /// Blocks go to where they are kept, and the mesh from there to its file.
+    /// Meshes through a block store.
     fn run_in_store(&self, work: Option<WorkDir>, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
         let plan = run.plan.clone();
         let (place, store) = match work {
@@ -265,7 +262,7 @@ impl Args {
         self.finish(made, &plan, bars)
     }
 
-    /// Writes the mesh and says what was done.
+    /// Writes the mesh and the reports.
     fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
@@ -274,7 +271,7 @@ impl Args {
             .memory((self.blocks.memory / 4) as usize)
             .grid(self.grid.options())
             .values(data.as_ref().map(|data| data as &dyn Beside));
-        // Passes over the blocks end when the run is to end.
+        // A cancelled pass over the blocks fails with an error.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
         };
@@ -312,7 +309,7 @@ impl Args {
         })
     }
 
-    /// What went wrong, for people.
+    /// Failure of a run, after its reports.
     fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
         let paged = self.write_page(plan, &networks, &report, None);
@@ -321,30 +318,31 @@ impl Args {
         }
         self.blocks.advise(&report, true);
         Failure::stage(format!(
-            "{} block(s) could not be meshed; their inputs are named above. --keep-going leaves them out",
-            report.failed.len()
+            "{} could not be meshed (listed above); --keep-going meshes the rest",
+            counted(report.failed.len(), "block")
         ))
     }
 
-    /// What ends a run before there are blocks to speak of.
+    /// Failure of a run before its blocks.
     fn explain_alone(&self, error: MeshingError) -> Failure {
         failure(error, &self.network.network, || self.stopped())
     }
 
-    /// What is left of a run that was stopped, and how it goes on.
+    /// Failure of a stopped run, with the command that continues it.
     fn stopped(&self) -> Failure {
         Failure::stopped(match &self.work.dir {
             Some(dir) => {
                 let (dir, command) = (dir.display(), stop::command_line());
-                format!("stopped; finished blocks are kept in {dir}. Go on from there with\n  {command}")
+                format!("stopped; finished blocks are kept in {dir}. Continue with\n  {command}")
             }
             None => {
-                "stopped; nothing is kept. With --work-dir DIR finished blocks are, and the same command goes on".into()
+                "stopped; nothing is kept. With --work-dir DIR, finished blocks are kept and the same command continues"
+                    .into()
             }
         })
     }
 
-    /// Writes the page of `--report`.
+    /// Writes the HTML report.
     fn write_page(
         &self,
         plan: &MeshPlan,
@@ -352,7 +350,7 @@ impl Args {
         run: &RunReport,
         found: Option<&Found>,
     ) -> Result<(), Failure> {
-        let failed = || (Mark::Bad, format!("{} blocks could not be meshed", run.failed.len()));
+        let failed = || (Mark::Bad, format!("{} could not be meshed", counted(run.failed.len(), "block")));
         let verdict = found.map_or_else(failed, |found| page::headline(found.check));
         self.report.write(&self.output, Some(verdict), plan, |page| {
             let Some(&Found { mesh, network, check, fidelity, caps }) = found else {
@@ -385,13 +383,13 @@ impl Args {
         })
     }
 
-    /// Writes what is known of inlets and outlets beside the mesh.
+    /// Writes the table of inlets and outlets.
     fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
         let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
         write_text(&self.table(), &text).map_err(|e| self.no_table(&e))
     }
 
-    /// Where the table of inlets and outlets goes.
+    /// Path of the table of inlets and outlets.
     fn table(&self) -> PathBuf {
         let mut name = self.output.file_stem().unwrap_or_default().to_owned();
         name.push("_patches.csv");
@@ -402,14 +400,13 @@ impl Args {
         Failure::unwritable(&self.table(), why)
     }
 
-    /// What of the options the mesh depends on, as they are typed.
+    /// Options that the mesh depends on, as command-line text.
     fn typed(&self) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
         format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed())
     }
 
-    /// Writes the refined network and says what was done to it, if that was asked for. Shards write to no file that others
-    /// write to.
+    /// Writes the refined network and its report, if requested. Shards do not write shared files.
     fn tell_refined(&self, run: &PreparedRun, stop: &Stop) -> Result<(), Failure> {
         let Some(report) = &run.networks.refine else { return Ok(()) };
         if let Some(path) = &self.refined {
@@ -437,7 +434,7 @@ impl Args {
             let output = Output { program, plan, prepare, refine: refine.as_ref(), run, check, fidelity };
             return print(true, &output, String::new);
         }
-        // Blocks that failed and a mesh that is not valid are errors, which --quiet does not silence.
+        // Failed blocks and invalid meshes are errors, which --quiet does not suppress.
         if !self.common.quiet
             || !run.failed.is_empty()
             || !run.keeps_vessels(plan.fuse)

@@ -1,4 +1,4 @@
-//! Floor 8: what was typed, resolved into one plan; progress bars; exit codes. One file per verb.
+//! Command line: options, progress bars, exit codes. One file per command.
 
 mod blocks;
 mod check;
@@ -23,6 +23,7 @@ mod log;
 mod man;
 mod mesh;
 mod network;
+mod numbers;
 mod page;
 mod picture;
 mod prepare;
@@ -47,7 +48,7 @@ pub use exit::Exit;
 use exit::Failure;
 use log::LogFormat;
 
-/// From the skeleton of a vascular network to one valid tetrahedral volume mesh.
+/// Makes tetrahedral volume meshes of vascular networks.
 #[derive(Debug, Parser)]
 #[command(
     name = "anastomesh",
@@ -56,14 +57,16 @@ use log::LogFormat;
     arg_required_else_help = true,
     args_override_self = true
 )]
-#[command(after_help = "Exit codes: 0 fine, 1 a gate is not met (the mesh is not valid), 2 usage, 3 bad input, \
-                        4 a stage failed, 70 a fault of the program, 130 stopped by Ctrl-C.")]
+#[command(
+    after_help = "Exit codes: 0 success, 1 validation failed, 2 usage error, 3 invalid input, 4 a stage failed, \
+                        70 internal error, 130 stopped by Ctrl-C."
+)]
 struct Args {
-    /// Take options from a file, by their long names: what is typed comes after it and wins; the resolved plan is written
-    /// beside the output as `OUTPUT_plan.toml`
+    /// Read options from a file, by their long names; command-line options take precedence. The resolved options are
+    /// written to `OUTPUT_plan.toml`
     #[arg(long, global = true, value_name = "PLAN.toml", help_heading = "General", hide_short_help = true)]
     config: Option<PathBuf>,
-    /// How messages are written
+    /// Format of messages
     #[arg(long, global = true, value_enum, default_value_t = LogFormat::Text, help_heading = "General", hide_short_help = true)]
     log_format: LogFormat,
     #[command(subcommand)]
@@ -72,39 +75,39 @@ struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Mesh a network: skeleton in, labelled tetrahedral mesh out
+    /// Mesh a network with tetrahedra
     Mesh(Box<mesh::Args>),
-    /// Make the wall of a network alone, for pictures and printers: STL, PLY, OBJ, GLB, 3MF
+    /// Write the wall surface of a network (STL, PLY, OBJ, GLB, 3MF)
     Surface(surface::Args),
-    /// Make a measured network one graph: doubled lines merged, spurs off, radii filled, points as needed
+    /// Repair a measured network: duplicate lines, spurs, missing radii, point spacing
     Prepare(prepare::Args),
-    /// Move the nodes of a network until its vessels do not overlap and can be cut
+    /// Move overlapping vessels of a network apart
     Refine(refine::Args),
-    /// Grow a second tree that shares the terminals of the first, as veins do with arteries
+    /// Grow a second tree that shares the terminals of the first, such as veins
     Dual(dual::Args),
-    /// Grow a network of vessels that fills an organ
+    /// Grow a vessel network that fills an organ
     Generate(generate::Args),
-    /// Fill a surface, a complex of facets or points with tetrahedra
+    /// Mesh a surface, a facet complex or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
-    /// Write a volume mesh, a surface or a network in another format, or a volume mesh's boundary
+    /// Convert a volume mesh, a surface or a network to another format, or a mesh to its boundary
     Convert(convert::Args),
-    /// Draw a mesh, a surface or a network as a PNG picture
+    /// Draw a mesh, a surface or a network as a PNG image
     Render(Box<render::Args>),
-    /// Make a page of a mesh, a surface or a network that turns it in any browser
+    /// Write an interactive 3D viewer of a mesh, a surface or a network as an HTML page
     View(Box<view::Args>),
-    /// Verify a volume mesh line by line
+    /// Check the validity of a volume mesh
     Check(check::Args),
-    /// Make a block again that failed, from what `mesh` left of it
+    /// Repeat a failed block from its dump
     Replay(replay::Args),
-    /// Print what a network holds
+    /// Print the properties of a network
     Info(info::Args),
-    /// Print what a shell needs to complete this command line
+    /// Print shell completions
     Completions(completions::Args),
-    /// Print a page of the manual
+    /// Print a manual page
     Man(man::Args),
 }
 
-/// Runs the program on the process's arguments.
+/// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     common::begin();
     install_panic_note();
@@ -119,7 +122,7 @@ pub fn main() -> ExitCode {
     let (args, matches) = match parsed {
         Ok(parsed) => parsed,
         Err(error) => {
-            // Help and version come this way too, and are no errors.
+            // Help and version are also reported as errors by clap.
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
             if error.use_stderr() && log::is_json() {
                 return failed(&Failure::usage(error.render().to_string()));
@@ -145,7 +148,7 @@ pub fn main() -> ExitCode {
         Verb::Completions(args) => completions::run(args, definition()),
         Verb::Man(args) => man::run(args, &definition()),
     });
-    // A run that failed is to be run again, too.
+    // The options of a failed run are written, too.
     let plan = config.map_or(Ok(()), |_| write_plan(&matches));
     match (result, plan) {
         (Ok(Ok(exit)), Ok(())) => exit.into(),
@@ -154,27 +157,27 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Says why it ends.
+/// Prints a failure and returns its exit code.
 fn failed(Failure { exit, message }: &Failure) -> ExitCode {
     log::error(message);
     (*exit).into()
 }
 
-/// Writes the options as they were resolved.
+/// Writes the resolved options.
 fn write_plan(matches: &ArgMatches) -> Result<(), Failure> {
     let definition = definition();
     let Some((name, matches)) = matches.subcommand() else { return Ok(()) };
     definition.find_subcommand(name).map_or(Ok(()), |verb| config::write_resolved(verb, matches))
 }
 
-/// The command line, with the options that every verb has.
+/// Definition of the command line, with global options.
 fn definition() -> Command {
     let mut definition = Args::command();
     definition.build();
     definition
 }
 
-/// A panic is always a fault of the program: say so beside the usual message.
+/// Adds a note to panic messages: a panic is always an internal error.
 fn install_panic_note() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
@@ -183,6 +186,6 @@ fn install_panic_note() {
         } else {
             usual(info);
         }
-        log::error("this is a fault of the program; please report it with the input and the options");
+        log::error("internal error: please report it with the input and the options");
     }));
 }

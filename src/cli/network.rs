@@ -1,43 +1,39 @@
-//! A network from the command line: read, cleaned.
+//! Network options, and reading of networks.
 
 use std::path::PathBuf;
 
 use super::exit::Failure;
 use super::hint;
+use super::numbers::above_zero;
 use super::units::Units;
 use crate::pipeline::Inlets;
 use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
 use anastomesh_network::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
 
-/// Arguments of every verb that reads a network.
+/// Options shared by commands that read a network.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
-    /// The network: .swc; .vtp or .vtk with lines; .am (Amira, text); .csv (nodes and edges); .graphml, .gxl; .net (Pajek);
-    /// .json (node-link); .npyd (`NumPy`'s arrays, a folder); .in (SimVascular 1D)
+    /// Network file: .swc, .vtp or .vtk (lines), .am (Amira text), .csv (nodes and edges), .graphml, .gxl, .net (Pajek),
+    /// .json (node-link), .npyd (folder of `NumPy` arrays), .in (`SimVascular` 1D)
     #[arg(value_name = "NETWORK")]
     pub network: PathBuf,
-    /// Array, column or attribute that holds the radius, on nodes or vessels (default: found by its name)
+    /// Name of the array, column or attribute with radii of nodes or vessels (default: detected by name)
     #[arg(long, value_name = "NAME")]
     pub radius_array: Option<String>,
-    /// What the file has for radii are diameters (without this, those that are called so are halved)
+    /// Treat all radii as diameters (default: only arrays with the name of a diameter are halved)
     #[arg(long)]
     pub diameters: bool,
-    /// Multiply radii alone, as when they are in another unit than the positions
-    #[arg(long, value_name = "FACTOR", value_parser = factor, allow_negative_numbers = true)]
+    /// Multiply radii by a factor, for example if their unit differs from that of positions
+    #[arg(long, value_name = "FACTOR", value_parser = above_zero, allow_negative_numbers = true)]
     pub radius_scale: Option<f64>,
-    /// Multiply positions and radii
-    #[arg(long, value_name = "FACTOR", value_parser = factor, allow_negative_numbers = true)]
+    /// Multiply positions and radii by a factor
+    #[arg(long, value_name = "FACTOR", value_parser = above_zero, allow_negative_numbers = true)]
     pub scale: Option<f64>,
-    /// Unit of the network's lengths (m, cm, mm, um), or from one to another: um:m reads micrometres and goes on in metres
+    /// Length unit of the network (m, cm, mm, um), or a conversion: um:m converts micrometres to metres
     #[arg(long, value_name = "UNIT[:UNIT]", conflicts_with = "scale")]
     pub units: Option<Units>,
-}
-
-fn factor(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|e| format!("{e}"))?;
-    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a finite number above zero".into()) }
 }
 
 /// A network ready for use.
@@ -45,29 +41,29 @@ fn factor(text: &str) -> Result<f64, String> {
 pub struct Network {
     /// The cleaned skeleton.
     pub skeleton: Skeleton,
-    /// What the reader decided.
+    /// Decisions of the reader.
     pub notes: Vec<NetworkNote>,
-    /// What cleaning did.
+    /// Report of the cleaning.
     pub cleaned: CleanReport,
-    /// What the file calls its nodes.
+    /// Node names in the file.
     names: NodeNames,
     /// Roots of the trees in the file.
     roots: Vec<NodeId>,
 }
 
-/// A network ready for use, and what was done so that it is.
+/// Prepared network with its report.
 #[derive(Debug)]
 pub struct PreparedNetwork {
     /// The prepared skeleton.
     pub skeleton: Skeleton,
-    /// What the reader decided.
+    /// Decisions of the reader.
     pub notes: Vec<NetworkNote>,
-    /// What was done.
+    /// Report of the preparation.
     pub report: PrepareReport,
 }
 
 impl NetworkArgs {
-    /// How the network is to be read.
+    /// Options of the reader.
     pub fn options(&self, any_radii: bool) -> NetworkOptions {
         NetworkOptions::default()
             .radius_array(self.radius_array.clone())
@@ -77,7 +73,7 @@ impl NetworkArgs {
             .any_radii(any_radii)
     }
 
-    /// Reads the network as it stands in its file.
+    /// Reads the network without changes.
     pub fn file(&self, any_radii: bool) -> Result<NetworkFile, Failure> {
         self.file_with(&self.options(any_radii))
     }
@@ -86,9 +82,7 @@ impl NetworkArgs {
     pub fn file_with(&self, options: &NetworkOptions) -> Result<NetworkFile, Failure> {
         if let (Some(name), Ok(NetworkFormat::Swc)) = (&self.radius_array, NetworkFormat::of(&self.network)) {
             let path = self.network.display();
-            return Err(Failure::usage(format!(
-                "{path}: SWC has one column of radii, without a name: leave --radius-array {name} out, or give --radius-scale"
-            )));
+            return Err(Failure::usage(format!("{path}: SWC has no named arrays: omit --radius-array {name}")));
         }
         let file = read_network(&self.network, options);
         let mut file = file.map_err(|e| Failure::input(hint::of_file(&e)))?;
@@ -118,15 +112,15 @@ impl NetworkArgs {
 }
 
 impl Network {
-    /// The terminals that become inlets.
+    /// Selects the inlets.
     pub fn inlets(&self) -> Result<Inlets, Failure> {
         Inlets::of(&self.skeleton, &self.names, &self.roots, &[]).map_err(|e| Failure::input(e.to_string()))
     }
 
-    /// Lines for people on what was read and cleaned.
+    /// Text lines on reading and cleaning.
     pub fn remarks(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.notes.iter().map(hint::of_note).collect();
-        lines.extend(self.cleaned.counts().iter().map(|(count, what)| format!("{count} {what}")));
+        lines.extend(self.cleaned.changes());
         lines
     }
 }

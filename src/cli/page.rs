@@ -1,4 +1,4 @@
-//! `--report`: a page of what a verb did, of every verb that makes or checks a mesh.
+//! HTML report option, shared by commands that make or check a mesh.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,27 +13,27 @@ use anastomesh_io::{ensure_text_writable, write_text};
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct ReportArgs {
-    /// Write a report: pictures, plots, tables and the check, as one page without links to anything else
+    /// Write an HTML report with pictures, plots, tables and the check, as one self-contained page
     #[arg(long, value_name = "PAGE.html")]
     report: Option<PathBuf>,
 }
 
 impl ReportArgs {
-    /// Where the page goes, if one is asked for.
+    /// Path of the report, if requested.
     pub fn page(&self) -> Option<&PathBuf> {
         self.report.as_ref()
     }
 
-    /// Makes sure, before any work is done, that the page can be written.
+    /// Checks before any work that the report can be written.
     pub fn ensure_writable(&self) -> Result<(), Failure> {
         let Some(path) = &self.report else { return Ok(()) };
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("html")) {
-            return Err(Failure::input(format!("{}: reports are written as .html", path.display())));
+            return Err(Failure::input(format!("{}: unrecognised report extension; known: .html", path.display())));
         }
         ensure_text_writable(path).map_err(|e| Failure::unwritable(path, &e))
     }
 
-    /// Writes the page, if one is asked for: about a file, with the sections that `fill` adds, and how the program was called.
+    /// Writes the requested report about a file, with the sections that `fill` adds and the command line.
     pub fn write(
         &self,
         about: &Path,
@@ -45,11 +45,7 @@ impl ReportArgs {
         let mut page = Page::new(about.file_name().unwrap_or(about.as_os_str()).to_string_lossy(), verdict);
         fill(&mut page).map_err(|e| Failure::input(format!("{}: {e}", about.display())))?;
         let plan = serde_json::to_string_pretty(plan).unwrap_or_default();
-        page.add(
-            Section::new("How it was made")
-                .text(&stop::command_line())
-                .folded("All options as they were resolved", &plan),
-        );
+        page.add(Section::new("Command line").text(&stop::command_line()).folded("Resolved options", &plan));
         write_text(path, &page.html()).map_err(|e| Failure::unwritable(path, &e))
     }
 }

@@ -1,10 +1,11 @@
-//! What is drawn, and how: arguments of every verb that makes pictures.
+//! Picture options, and drawing.
 
 use std::io;
 use std::path::Path;
 
 use super::exit::Failure;
 use super::network::NetworkArgs;
+use super::numbers::above_zero;
 use crate::picture::{
     Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
     PlaneWish, Shown,
@@ -22,30 +23,30 @@ pub struct PictureArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = size)]
     size: [usize; 2],
-    /// From where: auto (across the longest two axes), front, back, left, right, top, bottom, or degrees round z from the
-    /// front and above it: 30,20
+    /// View direction: auto (shows the longest two axes), front, back, left, right, top, bottom, or azimuth and elevation
+    /// in degrees: 30,20
     #[arg(long, value_name = "FROM", default_value = "auto", value_parser = direction, allow_hyphen_values = true)]
     view: Direction,
-    /// How many times closer than all of it just fits
+    /// Magnification; at 1 the whole object just fits
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = above_zero)]
     zoom: f64,
-    /// Place in the middle of the picture
+    /// Point in the centre of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     at: Option<Point3>,
-    /// What colours tell (default: patch for a mesh, radius for a network)
+    /// Quantity shown by colours (default: patch for a mesh, radius for a network)
     #[arg(long, value_enum)]
     color: Option<Colour>,
     /// Background
     #[arg(long, value_enum, default_value_t = BackgroundColour::Light)]
     background: BackgroundColour,
-    /// Take tetrahedra away that are before a plane, as the viewer sees it: x, y, z or view; -x, -y, -z: that are behind it. In the
-    /// middle of the picture or at a coordinate or share: x:12.5, view:40%
+    /// Remove tetrahedra in front of a plane: x, y, z or view; -x, -y, -z remove those behind it. The plane passes through
+    /// the centre, or a coordinate or percentage: x:12.5, view:40%
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
     clip: Option<PlaneWish>,
-    /// Cut the wall open at a plane, to look into the vessels
+    /// Cut the wall open at a plane
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true, conflicts_with = "clip")]
     cut_away: Option<PlaneWish>,
-    /// Samples per pixel and direction: more are smoother and take more memory (fewer in very large pictures)
+    /// Samples per pixel and direction for smooth edges (reduced for large pictures)
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=4))]
     samples: u8,
 }
@@ -54,15 +55,15 @@ pub struct PictureArgs {
 enum BackgroundColour {
     /// White
     Light,
-    /// All but black
+    /// Dark grey
     Dark,
-    /// None: transparent
+    /// Transparent
     None,
 }
 
-/// Pixels of a picture, at most.
+/// Maximum number of pixels.
 const MOST_PIXELS: usize = 64_000_000;
-/// Samples, at most: each takes 16 bytes.
+/// Maximum number of samples, of 16 bytes each.
 const MOST_SAMPLES: usize = 100_000_000;
 
 fn size(text: &str) -> Result<[usize; 2], String> {
@@ -71,7 +72,7 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     let size = [width, height].map(|n| n.parse::<usize>().unwrap_or(0));
     match size {
         [w, h] if w == 0 || h == 0 => Err(help.into()),
-        [w, h] if w.saturating_mul(h) > MOST_PIXELS => Err("no more than 64 million pixels".into()),
+        [w, h] if w.saturating_mul(h) > MOST_PIXELS => Err("give at most 64 million pixels".into()),
         size => Ok(size),
     }
 }
@@ -100,10 +101,6 @@ fn place(text: &str) -> Result<Point3, String> {
     numbers(text).map(|p: [f64; 3]| p.into()).ok_or_else(|| "give three coordinates: 1.5,0,-20".into())
 }
 
-fn above_zero(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "a finite number above zero".into())
-}
-
 /// Reads a network and finds its roots.
 pub fn vessels(args: &NetworkArgs) -> Result<(Skeleton, Vec<NodeId>), Failure> {
     let network = args.read()?;
@@ -114,7 +111,7 @@ pub fn vessels(args: &NetworkArgs) -> Result<(Skeleton, Vec<NodeId>), Failure> {
 }
 
 impl PictureArgs {
-    /// What the colours tell, where they tell something of the network.
+    /// Network quantity shown by the colours, if any.
     fn datum(&self) -> Option<Datum> {
         match self.color {
             Some(Colour::Radius) => Some(Datum::Radius),
@@ -126,9 +123,7 @@ impl PictureArgs {
     /// Draws a network.
     pub fn network(&self, network: &Skeleton, roots: &[NodeId]) -> Result<(Image, Shown), Failure> {
         if self.clip.is_some() {
-            return Err(Failure::usage(
-                "--clip shows tetrahedra, of which a network has none; --cut-away opens its wall",
-            ));
+            return Err(Failure::usage("--clip needs tetrahedra, which a network does not have; use --cut-away"));
         }
         let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots)?;
         let outline = picture.outline();
@@ -138,7 +133,7 @@ impl PictureArgs {
         Ok((canvas.finish(self.background()), picture.shown()))
     }
 
-    /// Draws a mesh, which was made of the network, where that is known.
+    /// Draws a mesh, and its network if known.
     pub fn mesh(
         &self,
         path: &Path,
@@ -153,7 +148,7 @@ impl PictureArgs {
             }
             (Some(datum), None) => {
                 let what = datum.name();
-                return Err(Failure::usage(format!("what is coloured by {what} needs the network: --network NETWORK")));
+                return Err(Failure::usage(format!("colours by {what} need the network: give --network NETWORK")));
             }
             _ => None,
         };
@@ -184,7 +179,7 @@ impl PictureArgs {
     }
 }
 
-/// The scale of what is known of a network's vessels.
+/// Colour scale of a network quantity.
 fn legend(datum: Datum, network: &Skeleton, mesh: &dyn MeshSource) -> Result<Legend, Failure> {
     if datum == Datum::Radius {
         return Ok(Legend::of(network.edges.iter().flat_map(|e| e.radii), true));

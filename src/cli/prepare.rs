@@ -1,4 +1,4 @@
-//! `anastomesh prepare`: makes a measured network one graph of one line per vessel.
+//! `anastomesh prepare`: repair of measured networks.
 
 use std::path::PathBuf;
 
@@ -8,6 +8,7 @@ use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
+use super::numbers::fraction;
 use crate::report::prepare::row_of;
 use anastomesh_io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 use anastomesh_network::{PrepareParams, PrepareReport, Touching, directed};
@@ -16,7 +17,7 @@ use anastomesh_network::{PrepareParams, PrepareReport, Touching, directed};
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the prepared network goes: .vtp, with the arrays `OriginalNode`, `Radius` and `EdgeRadius`, or .swc (a tree)
+    /// Output file: .vtp with the arrays `OriginalNode`, `Radius` and `EdgeRadius`, or .swc for a tree
     #[arg(short, long, value_name = "NETWORK", help_heading = "Output")]
     output: PathBuf,
     #[command(flatten)]
@@ -25,65 +26,60 @@ pub struct Args {
     common: Common,
 }
 
-/// What is done to a network before it is used: arguments of every verb that does.
+/// Options of the preparation, shared by commands that read networks for meshing.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Preparation")]
 pub struct CureArgs {
-    /// No cure at all: the network as the file has it
+    /// Do not prepare the network
     #[arg(long, conflicts_with_all = ["drop_islands", "touching"])]
     as_is: bool,
-    /// Leave radii that are absurd, and refuse those that are zero or missing
+    /// Keep outliers of the radius, and reject zero or missing radii
     #[arg(long)]
     keep_radii: bool,
-    /// Leave lines that run together
+    /// Keep duplicate lines
     #[arg(long)]
     keep_doubles: bool,
-    /// Leave spurs
+    /// Keep spurs
     #[arg(long)]
     keep_spurs: bool,
-    /// Leave branch points beside each other in one lumen, and loops within it
+    /// Keep several bifurcations within one lumen, and loops between them
     #[arg(long)]
     keep_joints: bool,
-    /// Leave points as they are
+    /// Keep the points (no resampling)
     #[arg(long)]
     keep_points: bool,
-    /// Even out the noise of points that are closer than half a radius, by half of the two tolerances
+    /// Smooth noise of points closer than half a radius, within half of both tolerances
     #[arg(long, conflicts_with_all = ["as_is", "keep_points"])]
     smooth_noise: bool,
-    /// Leave tips so close to their branch point that their cap lies in another vessel of it
+    /// Keep tips whose cap would lie in another vessel of their bifurcation
     #[arg(long)]
     keep_short_tips: bool,
-    /// What to do with tips that end in or on another vessel
+    /// Treatment of tips that touch another vessel
     #[arg(long, value_enum, default_value_t = TouchingArg::Retract)]
     touching: TouchingArg,
-    /// Drop components of fewer nodes than this
+    /// Remove components with fewer than N nodes
     #[arg(long, value_name = "N", default_value_t = 0)]
     drop_islands: usize,
-    /// How far a resampled axis may be from the given one, in radii
-    #[arg(long, value_name = "R", default_value_t = PrepareParams::default().axis_tolerance, value_parser = share)]
+    /// Tolerance of the axis when resampling, in radii
+    #[arg(long, value_name = "R", default_value_t = PrepareParams::default().axis_tolerance, value_parser = fraction)]
     axis_tolerance: f64,
-    /// How much a resampled radius may differ from the given one, as a share of it
-    #[arg(long, value_name = "SHARE", default_value_t = PrepareParams::default().radius_tolerance, value_parser = share)]
+    /// Relative tolerance of the radius when resampling
+    #[arg(long, value_name = "SHARE", default_value_t = PrepareParams::default().radius_tolerance, value_parser = fraction)]
     radius_tolerance: f64,
 }
 
-/// What to do with tips that end in or on another vessel.
+/// Treatment of tips that touch another vessel.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum TouchingArg {
-    /// Join them to it
+    /// Connect them to the vessel
     Join,
-    /// Draw them back until a cap has room
+    /// Shorten them until a cap fits
     Retract,
-    /// Leave them
+    /// Keep them
     Keep,
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|e| format!("{e}"))?;
-    if (0.0..1.0).contains(&value) { Ok(value) } else { Err("from 0 to below 1".into()) }
-}
-
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
@@ -93,7 +89,7 @@ struct Output<'a> {
 }
 
 impl CureArgs {
-    /// The cures, with `only_measured` but for grown networks.
+    /// Parameters of the preparation. `only_measured` excludes grown networks from it.
     pub fn params(&self, only_measured: bool) -> PrepareParams {
         let mut params = if self.as_is { PrepareParams::as_is() } else { PrepareParams::default() };
         params.only_measured = only_measured;
@@ -123,7 +119,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let params = args.cures.params(false);
     let pool = super::common::thread_pool(args.common.threads)?;
     let prepared = pool.install(|| args.network.prepared(&params))?;
-    // Only a tree whose edges lead away from its root can be written as SWC.
+    // SWC files need edges that lead away from the root.
     let network = directed(&prepared.skeleton);
     let originals = network.nodes.iter().map(|n| n.original).collect();
     write_tree(&args.output, &network, &[NetworkArray::NodeInts("OriginalNode", originals)])

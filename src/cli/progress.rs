@@ -1,4 +1,4 @@
-//! Progress: bars on a terminal, lines for the program that waits for this one.
+//! Progress: bars on a terminal, or JSON lines for a calling program.
 
 use std::fmt;
 use std::io::{IsTerminal, Write};
@@ -13,19 +13,19 @@ use super::{colours, log};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::units::{grouped, seconds_of};
 
-/// How programs are told of progress.
+/// Format of progress for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ProgressFormat {
-    /// A line of JSON each time
+    /// JSON lines
     Json,
 }
 
-/// Whether bars are shown: on a terminal only, where nobody is told in another way.
+/// True if bars are shown: on a terminal, without another form of progress.
 pub fn shows_bars(quiet: bool, told: Option<ProgressFormat>) -> bool {
     !quiet && told.is_none() && !log::is_json() && std::io::stderr().is_terminal()
 }
 
-/// The bar of a stage; 0 steps: their number is not known.
+/// Progress bar of a stage; 0 steps mean an unknown number.
 pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
     let (length, template) = match (steps, colours::are_wanted()) {
         (0, true) => (None, "{prefix:>10.cyan} {spinner:.green} {elapsed}"),
@@ -39,13 +39,13 @@ pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
     bar.set_prefix(stage);
     bar.set_message(counted_in(stage));
     if length.is_none() {
-        // Nobody tells it how far it is: it shows that it is alive by itself.
+        // Without steps, a timer moves the spinner.
         bar.enable_steady_tick(ALIVE);
     }
     bar
 }
 
-/// What the steps of a stage are, for people.
+/// Unit of the steps of a stage.
 fn counted_in(stage: &str) -> &'static str {
     match stage {
         "blocks" | "clusters" | "connectors" => " tetrahedra",
@@ -54,26 +54,26 @@ fn counted_in(stage: &str) -> &'static str {
     }
 }
 
-/// How often a bar of unknown length moves.
+/// Interval of the spinner.
 const ALIVE: Duration = Duration::from_millis(200);
-/// How long a stage has to run before it is said how long it will.
+/// Minimum running time of a stage before the remaining time is shown.
 const KNOWN_AFTER: Duration = Duration::from_secs(1);
 
-/// How much of how much is done.
+/// Writes the number of steps done and in total.
 fn write_count(state: &ProgressState, out: &mut dyn fmt::Write) {
     let [done, all] = [state.pos(), state.len().unwrap_or(0)].map(|n| short(n as f64));
-    // There is nobody to tell that a terminal cannot be written to.
+    // A write error of the terminal cannot be reported.
     let _ = write!(out, "{done} of {all}");
 }
 
-/// How long it will take.
+/// Writes the estimated remaining time.
 fn write_left(state: &ProgressState, out: &mut dyn fmt::Write) {
     if state.elapsed() >= KNOWN_AFTER && state.pos() > 0 {
         let _ = write!(out, ", {} left", seconds_of(state.eta().as_secs_f64().max(1.0).round()));
     }
 }
 
-/// A count in few digits.
+/// Formats a count with few digits.
 fn short(count: f64) -> String {
     match count {
         n if n >= 1e7 => format!("{:.0} million", n / 1e6),
@@ -89,21 +89,21 @@ pub struct Lines {
     unheard: AtomicBool,
 }
 
-/// A line is written no more often than this, but for the first and the last of a stage.
+/// Minimum interval between lines, except for the first and last line of a stage.
 const LINE_EVERY: Duration = Duration::from_millis(50);
 
 impl Lines {
-    /// Lines, if that is how progress is told: when they are asked for, or all that is said are objects.
+    /// Progress lines, if requested or if all messages are JSON.
     pub fn asked_for(quiet: bool, told: Option<ProgressFormat>) -> Option<Self> {
         (told.is_some() || (log::is_json() && !quiet)).then(Self::default)
     }
 
-    /// So much of a stage is done; 0 in all: not known.
+    /// Reports the steps done of a stage; a total of 0 means unknown.
     pub fn tell(&self, stage: &'static str, done: u64, total: u64) {
         let Ok(mut last) = self.last.lock() else { return };
         let is_over = done > 0 && done == total;
         match *last {
-            // Threads may tell in another order than that in which they count.
+            // Threads may report out of order.
             Some((at, before, when))
                 if at == stage && (done <= before || !(is_over || when.elapsed() >= LINE_EVERY)) =>
             {
@@ -116,13 +116,13 @@ impl Lines {
         }
     }
 
-    /// Whether the program that was told is gone: then nobody waits for this one, either.
+    /// True if the pipe is closed: the calling program has ended.
     pub fn is_unheard(&self) -> bool {
         self.unheard.load(Ordering::Relaxed)
     }
 }
 
-/// One bar per stage on standard error, and notes as lines; without a terminal only the notes.
+/// One bar per stage on standard error, and notes as lines. Without a terminal, only notes.
 #[derive(Debug)]
 pub struct Bars {
     shown: bool,
@@ -133,13 +133,13 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// `quiet` suppresses the notes as well.
+    /// Creates the bars; `quiet` also suppresses notes.
     pub fn new(quiet: bool, told: Option<ProgressFormat>, stop: Stop) -> Self {
         let lines = Lines::asked_for(quiet, told);
         Self { shown: shows_bars(quiet, told), quiet, lines, current: Mutex::new(None), stop }
     }
 
-    /// Runs a stage that does not tell how far it is.
+    /// Runs a stage without steps.
     pub fn during<T>(&self, stage: Stage, run: impl FnOnce() -> T) -> T {
         self.at(stage, 0, 0);
         let result = run();
@@ -166,7 +166,7 @@ impl Progress for Bars {
             *current = Some((stage, stage_bar(stage.name(), total)));
         }
         if let Some((_, bar)) = current.as_ref() {
-            // Threads may tell in another order than that in which they count.
+            // Threads may report out of order.
             bar.set_position(done.max(bar.position()));
         }
         if is_over && let Some((_, bar)) = current.take() {

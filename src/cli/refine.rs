@@ -1,4 +1,4 @@
-//! `anastomesh refine`: moves the nodes of a network until its vessels do not overlap and can be cut.
+//! `anastomesh refine`: moves overlapping vessels of a network apart.
 
 use std::path::{Path, PathBuf};
 
@@ -8,6 +8,7 @@ use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::log;
 use super::network::NetworkArgs;
+use super::numbers::number;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -27,23 +28,23 @@ use anastomesh_skeleton::Skeleton;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the refined network goes: .vtp (or .npyd, arrays in a folder), with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
+    /// Output file: .vtp or .npyd, with the arrays `OriginalNode`, `Displacement`, `Radius` and `EdgeRadius`
     #[arg(short, long, value_name = "NETWORK", help_heading = "Output")]
     output: PathBuf,
-    /// Iterations at most; it stops earlier when nothing is left to do
+    /// Maximum number of iterations
     #[arg(long, value_name = "N", default_value_t = RefineParams::default().iterations, help_heading = "Refinement")]
     iterations: usize,
-    /// Measure the metrics every so many iterations, and after each of the first ten (0: at both ends only)
+    /// Interval between measurements of the metrics, in iterations (0: only before and after). The first ten are always measured
     #[arg(long, value_name = "N", default_value_t = RefineParams::default().every, help_heading = "Refinement")]
     every: usize,
     #[command(flatten)]
     cures: CureArgs,
     #[command(flatten)]
     how: RefineArgs,
-    /// Write the metrics over the iterations as a table
+    /// Write the metrics of all measured iterations as a table
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     metrics: Option<PathBuf>,
-    /// Draw them: displacement, barrier potential, lengths and angles over the iterations
+    /// Plot displacement, barrier potential, lengths and angles over the iterations
     #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -52,70 +53,69 @@ pub struct Args {
     common: Common,
 }
 
-/// How to refine: arguments of every verb that does.
+/// Options of the refinement, shared by commands that refine networks.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Refinement")]
 pub struct RefineArgs {
     /// Rate of the barrier force, which drives overlapping vessels apart (the paper's l1)
-    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().barrier_rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().barrier_rate, allow_negative_numbers = true, value_parser = number)]
     barrier_rate: f64,
     /// Rate of the repelling force, which lengthens short vessels (the paper's l2)
-    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().repel_rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().repel_rate, allow_negative_numbers = true, value_parser = number)]
     repel_rate: f64,
     /// Rate of the angle force, which opens narrow angles (the paper's l3)
-    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().angle_rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", default_value_t = RefineParams::default().angle_rate, allow_negative_numbers = true, value_parser = number)]
     angle_rate: f64,
-    /// How far the axes of two vessels are to be apart, in sums of their radii
-    #[arg(long, value_name = "FACTOR", default_value_t = RefineParams::default().clearance, allow_negative_numbers = true)]
+    /// Target distance of two vessel axes, in sums of their radii
+    #[arg(long, value_name = "FACTOR", default_value_t = RefineParams::default().clearance, allow_negative_numbers = true, value_parser = number)]
     clearance: f64,
-    /// How far a node may go, in its radii: nothing moves but what overlaps (default: in a network whose vessels are
-    /// polylines, or where nothing overlaps, 1, further only where an overlap is not parted by that; in others, and with
-    /// `inf`, as far as room for cuts asks)
-    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    /// Maximum displacement of a node in radii, for overlapping vessels only. Default for measured networks and those without
+    /// overlaps: 1, more where an overlap needs it. Default for others, and with `inf`: as far as cuts need
+    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = number)]
     max_move: Option<f64>,
-    /// Let terminals and roots move this far, in the unit of the network
-    #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
+    /// Maximum displacement of terminals and roots, in the unit of the network
+    #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true, value_parser = number)]
     free_terminals: f64,
-    /// What to do with terminals that are closer to each other than the sum of their radii; all others stay where they are
+    /// Treatment of terminals closer than the sum of their radii
     #[arg(long, value_enum, default_value_t = CrowdedArg::Part)]
     crowded_terminals: CrowdedArg,
-    /// What to do with vessels that overlap in the end
+    /// Treatment of overlaps that remain after the last iteration
     #[arg(long, value_enum, default_value_t = ResidualArg::Shrink)]
     residual: ResidualArg,
-    /// Metrics in which the result must not be worse than the input: when no state is, nothing is moved
+    /// Metrics that must not get worse, comma-separated; if no iteration satisfies this, nothing is moved
     #[arg(long, value_name = "METRICS", value_delimiter = ',', value_parser = metric, default_value = "overlaps,far-pairs")]
     hold: Vec<Metric>,
 }
 
-/// What to do with crowded terminals.
+/// Treatment of terminals that are too close.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum CrowdedArg {
-    /// List them: where they lie no two caps have room
+    /// Keep and list them; their caps do not fit
     Keep,
-    /// Move them apart, half the way each, as far as two caps need
+    /// Move both apart until two caps fit
     Part,
-    /// Make them one: of two vessels that leave one node the thinner goes, others are joined
+    /// Merge them: of two vessels from one node the thinner is removed, others are joined
     Merge,
 }
 
 fn metric(name: &str) -> Result<Metric, String> {
     let all = Metric::ALL.map(Metric::name);
-    Metric::ALL.into_iter().find(|m| m.name() == name).ok_or_else(|| format!("the metrics are {}", all.join(", ")))
+    Metric::ALL.into_iter().find(|m| m.name() == name).ok_or_else(|| format!("known metrics: {}", all.join(", ")))
 }
 
-/// What to do with vessels that overlap in the end.
+/// Treatment of overlaps that remain after the last iteration.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum ResidualArg {
     /// List them
     Report,
-    /// Reduce their radii where they meet, by 30 % at most
+    /// Reduce the radii at the overlap by at most 30 %
     Shrink,
-    /// Mesh them together as one lumen; `refine` lists them
+    /// Mesh both vessels as one lumen; `refine` only lists them
     Fuse,
 }
 
 impl RefineArgs {
-    /// Whether vessels that overlap in the end are to be meshed together.
+    /// True if remaining overlaps are meshed as one lumen.
     pub fn fuses(&self) -> bool {
         matches!(self.residual, ResidualArg::Fuse)
     }
@@ -128,7 +128,7 @@ impl RefineArgs {
         }
     }
 
-    /// The parameters for so many iterations.
+    /// Parameters with this number of iterations.
     pub fn params(&self, iterations: usize) -> RefineParams {
         RefineParams::default()
             .iterations(iterations)
@@ -152,7 +152,7 @@ impl RefineArgs {
     }
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,

@@ -1,4 +1,4 @@
-//! `anastomesh render`: a picture of a mesh, a surface or a network.
+//! `anastomesh render`: picture of a mesh, a surface or a network.
 
 use std::path::{Path, PathBuf};
 
@@ -17,27 +17,26 @@ use std::num::NonZeroUsize;
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
-    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off), a network (as `mesh` reads), or the work \
-     directory of a run of `mesh`")))]
+    "Volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), surface (.stl, .ply, .obj, .off), network (see `mesh`), or work directory of \
+     `mesh`")))]
 pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,
-    /// Where the picture goes
+    /// Output file
     #[arg(short, long, value_name = "PICTURE.png", help_heading = "Output")]
     output: PathBuf,
-    /// The network that the mesh was made of, for what is coloured by radius or order
+    /// Network of the mesh, for colours by radius or order
     #[arg(long = "network", value_name = "NETWORK")]
     made_of: Option<PathBuf>,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
-    /// held as a whole
+    /// Memory limit for VTU files of `mesh`, which are then read block by block. Other files are loaded completely
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
-    /// Number of threads (default: all cores); the picture does not depend on it
+    /// Number of threads (default: all cores); the result does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
 }
@@ -46,7 +45,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let unwritable = |e: std::io::Error| Failure::unwritable(&args.output, &e);
     if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::input(format!("{}: pictures are written as .png", args.output.display())));
+        return Err(Failure::input(format!("{}: unrecognised picture extension; known: .png", args.output.display())));
     }
     ensure_text_writable(&args.output).map_err(unwritable)?;
     let pool = thread_pool(args.threads)?;
@@ -84,7 +83,7 @@ impl Args {
         }
     }
 
-    /// The network beside the mesh.
+    /// Network of the mesh, if given.
     fn vessels(&self) -> Result<Option<anastomesh_skeleton::Skeleton>, Failure> {
         let Some(network) = &self.made_of else { return Ok(None) };
         let args = NetworkArgs { network: network.clone(), ..self.input.clone() };
@@ -92,15 +91,15 @@ impl Args {
     }
 }
 
-/// What the colours say, in words.
+/// Text on the meaning of the colours.
 fn told(shown: Shown) -> Option<String> {
     let scale =
         |what: &str| shown.legend.map(|l| format!("{what} from {:.4} (dark violet) to {:.4} (yellow)", l.low, l.high));
     match shown.colour {
-        Colour::Radius => scale("radius, in equal ratios,"),
+        Colour::Radius => scale("radius (logarithmic)"),
         Colour::Order => scale("Strahler order"),
         Colour::Quality => Some("radius ratio from 0 (red) to 1 (blue)".into()),
-        Colour::Patch => Some("wall red, inlets blue, outlets yellow; inside of the mesh cream".into()),
+        Colour::Patch => Some("wall red, inlets blue, outlets yellow, interior cream".into()),
         Colour::Plain | Colour::Block => None,
     }
 }

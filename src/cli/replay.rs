@@ -1,4 +1,4 @@
-//! `anastomesh replay`: makes a block again that failed, from its dump.
+//! `anastomesh replay`: repeats a failed block from its dump.
 
 use std::path::{Path, PathBuf};
 
@@ -16,45 +16,45 @@ use crate::pipeline::{Estimate, TooLarge, replay};
 use crate::report::rows::row;
 use anastomesh_io::volume::{MeshNotes, ensure_writable, write_mesh};
 use anastomesh_mesh::quality::TetQuality;
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, tetrahedra};
 use anastomesh_tet::{TetError, parts::Watch};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The input of a block that failed: a file of the folder MESH.failed that `mesh` leaves
+    /// Dump of a failed block: a file of the folder MESH.failed, which `mesh` writes
     #[arg(value_name = "DUMP.json")]
     dump: PathBuf,
-    /// Where the block's mesh goes if it comes out: .vtu, .pvtu, .msh, .msh2, .mesh, or .ele
+    /// Output file for the mesh of the block: .vtu, .pvtu, .msh, .msh2, .mesh, or .ele
     #[arg(short, long, value_name = "MESH")]
     output: Option<PathBuf>,
-    /// Memory that may be used, such as 2GiB or 500MB
+    /// Memory limit, such as 2GiB or 500MB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
     memory: u64,
     #[command(flatten)]
     common: Common,
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
-    /// The program that wrote the dump.
+    /// Program that wrote the dump.
     written_by: &'a str,
     block: String,
     nodes: &'a [u32],
-    /// None when it came out.
+    /// Failure; `None` if the block was meshed.
     failed: Option<Failed>,
     mesh: Option<ReplayedMesh>,
 }
 
-/// Where it failed.
+/// Stage and reason of the failure.
 #[derive(Serialize)]
 struct Failed {
     stage: &'static str,
     reason: String,
 }
 
-/// What came out.
+/// Mesh of the block.
 #[derive(Serialize)]
 struct ReplayedMesh {
     points: usize,
@@ -63,7 +63,7 @@ struct ReplayedMesh {
     file: Option<String>,
 }
 
-/// Makes the block again.
+/// Repeats the block.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let path = args.dump.display();
     let refused = |why: &dyn std::fmt::Display| Failure::input(format!("{path}: {why}"));
@@ -97,7 +97,7 @@ impl Args {
             return Ok(Exit::StageFailed);
         }
         let (block, nodes) = (dump.name(), &dump.nodes);
-        Err(Failure::stage(format!("{block} (nodes {nodes:?}) fails at the stage '{stage}': {reason}")))
+        Err(Failure::stage(format!("{block} (nodes {nodes:?}) failed at the stage '{stage}': {reason}")))
     }
 
     fn comes_out(&self, dump: &BlockDump, block: Finished) -> Result<Exit, Failure> {
@@ -134,12 +134,11 @@ impl Args {
         }
         if let Some(ReplayedMesh { points, tets, .. }) = mesh {
             let (block, nodes) = (dump.name(), &dump.nodes);
-            let [tets, points] = [tets, points].map(grouped);
             let hint = if self.output.is_none() { " (-o MESH writes it)" } else { "" };
             let files: Vec<&Path> = self.output.iter().map(PathBuf::as_path).collect();
             log::result(&format!(
-                "{block} (nodes {nodes:?}) comes out{hint}\n{}{}",
-                row("mesh", &format!("{tets} tetrahedra, {points} points")),
+                "{block} (nodes {nodes:?}) was meshed{hint}\n{}{}",
+                row("mesh", &format!("{}, {}", tetrahedra(tets), counted(points, "point"))),
                 ended(&files).rows(&[])
             ));
         }

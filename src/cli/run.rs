@@ -1,4 +1,4 @@
-//! What the verbs that mesh a network say of it and of its faults.
+//! Notes and failures of commands that mesh a network.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use anastomesh_io::network::NetworkNote;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineError;
 
-/// Lines for people on what was read and on the cures; with `all` at length.
+/// Text lines on reading and preparation; with `all`, in full.
 pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<String> {
     let mut lines: Vec<String> = notes.iter().map(hint::of_note).collect();
     if report.changed() {
@@ -20,7 +20,7 @@ pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<
     lines
 }
 
-/// Failure of a run without blocks to speak of. `stopped`: that of a run which was told to stop.
+/// Failure of a run before its blocks. `stopped` makes the failure of a stopped run.
 pub fn failure(error: MeshingError, network: &Path, stopped: impl FnOnce() -> Failure) -> Failure {
     match error {
         MeshingError::Skeleton(e) => Failure::input(format!("{}: {e}; correct the file", network.display())),

@@ -1,4 +1,4 @@
-//! Ctrl-C, and what asks a program to end: the first time a run ends where it may, the second time the program does.
+//! Signals: the first Ctrl-C stops the run at the next safe point, the second ends the program.
 
 use std::io;
 use std::sync::Arc;
@@ -14,56 +14,56 @@ use signal_hook::low_level;
 use super::exit::{Exit, Failure};
 use super::log;
 
-/// How long a run that keeps nothing may take to end by itself: some stages are long and do not ask.
+/// Time until a run without stored results is ended after a signal. Some stages do not check for it.
 #[cfg(unix)]
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What is said of a run that keeps nothing.
-pub const NOTHING_KEPT: &str = "stopped; nothing is kept, and no file is touched";
+/// Message on stopping a run without stored results.
+pub const NOTHING_KEPT: &str = "stopped; nothing is kept, and no file was changed";
 
-/// Whether the run is to end. Only verbs that ask listen: elsewhere the first Ctrl-C ends the program, as everywhere.
+/// Stop request. Only commands that check it listen; in others the first Ctrl-C ends the program.
 #[derive(Clone, Debug)]
 pub struct Stop {
     asked: Arc<AtomicBool>,
-    /// Whether there is something that only the run itself can end well.
+    /// True if only the run itself can stop safely, as it writes results.
     keeps: Arc<AtomicBool>,
 }
 
 impl Stop {
-    /// Begins to listen, for a run that leaves nothing before it calls [`Stop::keep`]. Unless `quiet`, the first signal is
-    /// answered at once.
+    /// Installs the signal handlers. The run must not write results before it calls [`Stop::keep`]. Unless `quiet`, the
+    /// first signal is acknowledged.
     pub fn listen(quiet: bool) -> Result<Self, Failure> {
         let stop = Self::deaf();
-        // SIGHUP stays as it is: a run under `nohup` goes on when its terminal is closed.
+        // SIGHUP is not handled: a run under `nohup` continues when its terminal closes.
         for signal in [SIGINT, SIGTERM] {
             let listens = stop.listen_to(signal).and_then(|()| stop.answer(signal, quiet));
-            listens.map_err(|e| Failure::stage(format!("Ctrl-C cannot be heard: {e}")))?;
+            listens.map_err(|e| Failure::stage(format!("signal handler cannot be installed: {e}")))?;
         }
         Ok(stop)
     }
 
-    /// One that is never asked: for verbs that the first Ctrl-C ends.
+    /// Request that is never set, for commands that the first Ctrl-C ends.
     pub fn deaf() -> Self {
         Self { asked: Arc::default(), keeps: Arc::default() }
     }
 
-    /// From here on the run ends by itself alone: it writes, or keeps what it has done.
+    /// Marks that the run writes results, and must stop on its own.
     pub fn keep(&self) {
         self.keeps.store(true, Ordering::SeqCst);
     }
 
-    /// Whether the run is to end.
+    /// True if a stop was requested.
     pub fn is_asked(&self) -> bool {
         self.asked.load(Ordering::Relaxed)
     }
 
-    /// In this order: the second signal finds the flag that the first one has set.
+    /// Registers the flag. In this order, the second signal sees the flag that the first one has set.
     fn listen_to(&self, signal: i32) -> io::Result<()> {
         flag::register_conditional_shutdown(signal, i32::from(Exit::Stopped.code()), Arc::clone(&self.asked))?;
         flag::register(signal, Arc::clone(&self.asked)).map(drop)
     }
 
-    /// Says that the signal was heard, and ends a run that keeps nothing when it takes too long to end by itself.
+    /// Acknowledges the signal, and ends a run without results that does not stop in time.
     #[cfg(unix)]
     fn answer(&self, signal: i32, quiet: bool) -> io::Result<()> {
         use std::io::Read;
@@ -71,12 +71,12 @@ impl Stop {
         low_level::pipe::register(signal, told)?;
         let Self { asked, keeps } = self.clone();
         let wait = move || {
-            // A signal may have come before the thread.
+            // The signal may arrive before the thread starts.
             if !asked.load(Ordering::SeqCst) && heard.read_exact(&mut [0]).is_err() {
                 return;
             }
             if !quiet {
-                log::note("anastomesh: stopping; Ctrl-C again ends at once");
+                log::note("anastomesh: stopping; press Ctrl-C again to end immediately");
             }
             std::thread::sleep(PATIENCE);
             if !keeps.load(Ordering::SeqCst) {
@@ -87,20 +87,20 @@ impl Stop {
         std::thread::Builder::new().spawn(wait).map(drop)
     }
 
-    /// There is nothing here that a thread could wait for: a second Ctrl-C ends what does not ask.
+    /// Without Unix signals, a second Ctrl-C ends the program.
     #[cfg(not(unix))]
     fn answer(&self, _: i32, _: bool) -> io::Result<()> {
         Ok(())
     }
 }
 
-/// What was typed, to be typed again.
+/// Command line in a form that can be entered again.
 pub fn command_line() -> String {
     let words = std::env::args_os().map(|word| quoted(&word.to_string_lossy()));
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

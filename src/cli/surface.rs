@@ -1,4 +1,4 @@
-//! `anastomesh surface`: the wall of a network for pictures and printers, without tetrahedra.
+//! `anastomesh surface`: wall surface of a network.
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +24,7 @@ use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 
@@ -31,10 +32,10 @@ use anastomesh_network::RefineReport;
 pub struct Args {
     #[command(flatten)]
     network: NetworkArgs,
-    /// Where the wall goes: .stl (binary), .ply, .obj, .off, .glb, .3mf or .vtp
+    /// Output file: .stl (binary), .ply, .obj, .off, .glb, .3mf or .vtp
     #[arg(short, long, value_name = "SURFACE", help_heading = "Output")]
     output: PathBuf,
-    /// Leave inlets and outlets open instead of closing them with flat caps
+    /// Omit the caps of inlets and outlets
     #[arg(long, help_heading = "Output")]
     no_caps: bool,
     #[command(flatten)]
@@ -47,7 +48,7 @@ pub struct Args {
     how: RefineArgs,
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
@@ -59,7 +60,7 @@ struct Output<'a> {
     check: Option<&'a CheckReport>,
 }
 
-/// Makes the wall of a network and writes it.
+/// Makes and writes the wall of a network.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let plan = MeshPlan { hollow: true, ..args.blocks.plan(args.how.fuses()) };
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
@@ -80,7 +81,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
-    /// The network, read and prepared.
+    /// Reads and prepares the network.
     fn prepared(&self, mut plan: MeshPlan) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
         let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
@@ -122,7 +123,7 @@ impl Args {
         })
     }
 
-    /// What went wrong, for people.
+    /// Failure of a run, after its report.
     fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
         if let Err(failure) = self.print(plan, &networks, &report, None) {
@@ -130,12 +131,12 @@ impl Args {
         }
         self.blocks.advise(&report, true);
         Failure::stage(format!(
-            "{} block(s) have no sound surface, named above. --keep-going leaves them out",
-            report.failed.len()
+            "{} without a valid surface (listed above); --keep-going writes the rest",
+            counted(report.failed.len(), "block")
         ))
     }
 
-    /// What ends a run before there are blocks to speak of.
+    /// Failure of a run before its blocks.
     fn explain_alone(&self, error: MeshingError) -> Failure {
         failure(error, &self.network.network, || Failure::stopped(NOTHING_KEPT))
     }
@@ -152,7 +153,7 @@ impl Args {
             let Networks { prepare, refine, .. } = networks;
             return print(true, &Output { program, plan, prepare, refine: refine.as_ref(), run, check }, String::new);
         }
-        // What is wrong is an error, which --quiet does not silence.
+        // Failed blocks and invalid surfaces are errors, which --quiet does not suppress.
         let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());
         if !self.common.quiet || is_wrong {
             if self.common.verbose {

@@ -18,11 +18,11 @@ impl Unit {
             "cm" => Ok(Self::Centimetre),
             "mm" => Ok(Self::Millimetre),
             "um" | "µm" | "μm" => Ok(Self::Micrometre),
-            other => Err(format!("'{other}' is no unit: m, cm, mm or um")),
+            other => Err(format!("unknown unit '{other}'; known: m, cm, mm, um")),
         }
     }
 
-    /// How many of it are in a metre.
+    /// Number of units in a metre.
     fn per_metre(self) -> f64 {
         match self {
             Self::Metre => 1.0,
@@ -42,7 +42,7 @@ impl Unit {
     }
 }
 
-/// The unit of a network, and that in which it goes on.
+/// Units of the input and of the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
     from: Unit,
@@ -59,10 +59,10 @@ impl FromStr for Units {
 }
 
 impl Units {
-    /// By what lengths are multiplied, if they are.
+    /// Factor on lengths, if the units differ.
     pub fn factor(self) -> Option<f64> {
         let [from, to] = [self.from, self.to].map(Unit::per_metre);
-        // The quotient of powers of ten is exact where it is a whole number, and the nearest number to it elsewhere.
+        // The quotient of powers of ten is correctly rounded.
         (self.from != self.to).then(|| to / from)
     }
 

@@ -1,4 +1,4 @@
-//! `anastomesh view`: a mesh or a network as a page that opens in any browser.
+//! `anastomesh view`: interactive 3D viewer as an HTML page.
 
 use std::fs;
 use std::io;
@@ -21,40 +21,38 @@ use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// A mesh of no more tetrahedra is checked, so that its faults can be seen, whether that is asked for or not.
+/// Maximum number of tetrahedra of a mesh that is checked by default.
 const CHECKED: usize = 2_000_000;
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
-    "A volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), a surface (.stl, .ply, .obj, .off), a network (as `mesh` reads), or the work \
-     directory of a run of `mesh`")))]
+    "Volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), surface (.stl, .ply, .obj, .off), network (see `mesh`), or work directory of \
+     `mesh`")))]
 pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,
-    /// Where the page goes (default: the input with .html for its extension)
+    /// Output file (default: the input with the extension .html)
     #[arg(short, long, value_name = "PAGE.html")]
     output: Option<PathBuf>,
-    /// The network that the mesh was made of: colours by radius and order, and a click names vessel and node
+    /// Network of the mesh, for colours by radius and order, and for names of vessels and nodes
     #[arg(long = "network", value_name = "NETWORK")]
     made_of: Option<PathBuf>,
-    /// Folder with the dumps of blocks that failed (default: the input with `.failed` appended, if that is there)
+    /// Folder with dumps of failed blocks (default: the input with `.failed` appended, if it exists)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
-    /// Check the mesh, so that its faults are places to fly to, however large it is (without this, up to two million
-    /// tetrahedra)
+    /// Check the mesh and mark failures in the viewer, for any size (default: up to 2 million tetrahedra)
     #[arg(long, conflicts_with = "no_check")]
     check: bool,
     /// Do not check the mesh
     #[arg(long)]
     no_check: bool,
-    /// Memory to keep to with a VTU file of the verb mesh: when it needs more, it is read block by block. All other files are
-    /// held as a whole
+    /// Memory limit for VTU files of `mesh`, which are then read block by block. Other files are loaded completely
     #[arg(long, value_name = "SIZE", default_value = "1GiB", value_parser = limits::size)]
     memory: u64,
-    /// Number of threads (default: all cores); the page does not depend on it
+    /// Number of threads (default: all cores); the result does not depend on it
     #[arg(short = 'j', long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Print nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
 }
@@ -65,7 +63,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("html"));
     let unwritable = |e: io::Error| Failure::unwritable(&output, &e);
     if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("html")) {
-        return Err(Failure::input(format!("{}: pages are written as .html", output.display())));
+        return Err(Failure::input(format!("{}: unrecognised viewer extension; known: .html", output.display())));
     }
     ensure_text_writable(&output).map_err(unwritable)?;
     let title = input.file_name().unwrap_or(input.as_os_str()).to_string_lossy().into_owned();
@@ -109,7 +107,7 @@ impl Args {
         Ok(page)
     }
 
-    /// What a check finds in a mesh that is not too large for it, or is to be checked all the same.
+    /// Failures found by a check of the mesh, unless it is too large or the check is disabled.
     fn faults_of(&self, opened: &OpenedMesh) -> Result<Vec<Fault>, Failure> {
         if self.no_check || (!self.check && opened.source().counts().tets > CHECKED) {
             return Ok(Vec::new());
@@ -118,7 +116,7 @@ impl Args {
         Ok(check.map_or_else(Vec::new, |check| Fault::of_check(&check)))
     }
 
-    /// Adds a mesh; where blocks of it are missing.
+    /// Adds a mesh, and returns the positions of missing blocks.
     fn add_mesh(&self, page: &mut ViewerPage, mesh: &dyn MeshSource) -> Result<Vec<Fault>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
@@ -131,7 +129,7 @@ impl Args {
         let options = WallOptions { vessels: data.as_ref().map(|data| data as _) };
         let wall = Wall::of(mesh, &options).map_err(failed)?;
         if wall.triangles() == 0 {
-            return Err(Failure::input(format!("{path}: there is nothing to be seen: it has no boundary")));
+            return Err(Failure::input(format!("{path}: the mesh has no boundary to show")));
         }
         let tets = add_tets(mesh, &wall, &mut page.pack).map_err(failed)?;
         page.know("tets", tets);
@@ -143,7 +141,7 @@ impl Args {
         Ok(missing)
     }
 
-    /// The blocks that failed, by their dumps.
+    /// Failed blocks, from their dumps.
     fn dumps(&self) -> Result<Vec<Fault>, Failure> {
         let beside = || {
             let mut name = self.input.network.clone().into_os_string();
@@ -163,7 +161,7 @@ impl Args {
             }
         }
         files.sort_unstable();
-        // What is no dump says nothing of the mesh.
+        // Other files in the folder are ignored.
         let fault = |path: &PathBuf| {
             let dump = BlockDump::from_json(&fs::read(path).ok()?).ok()?;
             Fault::of_dump(&dump)

@@ -1,4 +1,4 @@
-//! Work directories: what keeps finished blocks between runs, and runs that share the work in one.
+//! Work directories, which store finished blocks between runs, and shards.
 
 use std::path::{Path, PathBuf};
 
@@ -12,20 +12,20 @@ use crate::pipeline::{Manifest, MeshPlan, NoShard, Role, Shard, ShareReport, Sto
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::units::{grouped, seconds_of};
 
-/// Where finished blocks are kept, and by how many runs.
+/// Options of work directories and shards.
 #[derive(Debug, clap::Args)]
 pub struct WorkArgs {
-    /// Folder that keeps finished blocks: a run that was stopped goes on there when it is started again
+    /// Folder for finished blocks; a stopped run continues from it
     #[arg(long = "work-dir", help_heading = "Run", value_name = "DIR")]
     pub dir: Option<PathBuf>,
-    /// Throw away what the work directory holds if it is of another network, other options or another version
+    /// Delete the contents of the work directory if network, options or version differ
     #[arg(long, help_heading = "Run", requires = "dir")]
     restart: bool,
-    /// Make only the I-th of N shares of the blocks, counted from 1, and write no mesh: any number of these at a time, on any
-    /// number of machines; then the same command without this finds all blocks
+    /// Make only shard I of N (from 1) and write no mesh. Shards can run at the same time on several machines; the same
+    /// command without this option then joins them
     #[arg(long, help_heading = "Run", value_name = "I/N", requires = "dir", conflicts_with = "restart", value_parser = Shard::two_numbers)]
     shard: Option<(u32, u32)>,
-    /// Make what shards have left undone instead of refusing it
+    /// Make blocks that shards have not finished, instead of failing
     #[arg(long, help_heading = "Run", requires = "dir", conflicts_with = "shard")]
     make_missing: bool,
 }
@@ -43,19 +43,19 @@ impl From<StoreError> for Failure {
 }
 
 impl WorkArgs {
-    /// The shard that this run is, if it is one.
+    /// Shard of this run, if any.
     ///
     /// # Errors
-    /// When there is no such shard, or joints are woven, as connectors then wait for clusters of other shards.
+    /// The shard does not exist, or joints are woven: connectors would need clusters of other shards.
     pub fn shard(&self, plan: &MeshPlan) -> Result<Option<Shard>, Failure> {
         let Some((number, of)) = self.shard else { return Ok(None) };
         if plan.weaves_joints() {
-            return Err(Failure::usage("--shard needs blocks that can be made in any order: give --joint disc"));
+            return Err(Failure::usage("--shard needs independent blocks: give --joint disc"));
         }
         Shard::new(number, of).map(Some).map_err(|e: NoShard| Failure::input(e.to_string()))
     }
 
-    /// Opens the work directory, if one is given; `manifest` says what it belongs to.
+    /// Opens the work directory, if given; `manifest` describes the run.
     pub fn open(&self, shard: Option<Shard>, manifest: impl FnOnce() -> Manifest) -> Result<Option<WorkDir>, Failure> {
         let Some(dir) = &self.dir else { return Ok(None) };
         let role = match shard {
@@ -67,7 +67,7 @@ impl WorkArgs {
     }
 }
 
-/// Says what a shard did.
+/// Reports the result of a shard.
 pub fn told(shard: Shard, report: &ShareReport, json: bool, quiet: bool) -> Result<Exit, Failure> {
     if json {
         #[derive(serde::Serialize)]
@@ -84,15 +84,15 @@ pub fn told(shard: Shard, report: &ShareReport, json: bool, quiet: bool) -> Resu
         let [blocks, share, found, failed] = [blocks, share, found, failed].map(|&n| grouped(n));
         let seconds = seconds_of(*seconds);
         log::result(&format!(
-            "shard {shard}: {share} of {blocks} blocks in {seconds}, {found} were there before, {failed} fail and are left \
-             to the run that joins the shards"
+            "shard {shard}: {share} of {blocks} blocks in {seconds}, {found} reused, {failed} failed (retried by the run that \
+             joins the shards)"
         ));
     }
     Ok(Exit::Fine)
 }
 
-/// What is said of a work directory in use: whoever kills the program cannot be told afterwards.
+/// Prints a note on the work directory, before the run can be killed.
 pub fn note(dir: &Path, bars: &Bars) {
     let dir = dir.display();
-    bars.note(&format!("finished blocks are kept in {dir}: the same command goes on there if this run is stopped"));
+    bars.note(&format!("finished blocks are kept in {dir}: if this run is stopped, the same command continues"));
 }

@@ -126,7 +126,7 @@ impl Overruns {
 #[non_exhaustive]
 pub enum PartitionError {
     /// A parameter is not a positive number.
-    #[error("partition parameter {name} is {value}; it has to be a positive number")]
+    #[error("partition parameter {name} is {value}; it must be positive")]
     Parameter {
         /// Name of the parameter.
         name: &'static str,
@@ -142,7 +142,7 @@ pub enum PartitionError {
         node: NodeId,
     },
     /// An edge has a length or radius that is zero, negative or not a number.
-    #[error("edge {} has length {length} and radii {} and {}; all have to be positive", edge.0, radii[0], radii[1])]
+    #[error("edge {} has length {length} and radii {} and {}; all must be positive", edge.0, radii[0], radii[1])]
     BadEdge {
         /// The edge.
         edge: EdgeId,

@@ -17,14 +17,14 @@ use anastomesh_mesh::progress::{Stage, ask};
 use anastomesh_skeleton::BranchId;
 use anastomesh_tet::parts::Watch;
 
-/// What is done about blocks that meet, and was before.
+/// Cures of intersecting blocks, now and in earlier rounds.
 #[derive(Debug, Default)]
 pub struct Apart {
     /// Blocks that met, as often as clusters were made again because of it.
     met: Vec<Meetings>,
     /// Vessels that are not cut, for their connectors met something: as part of a cluster they can be made finer.
     uncut: BTreeSet<BranchId>,
-    /// How often some were added.
+    /// Number of times that cures were added.
     rounds: usize,
 }
 

@@ -15,7 +15,7 @@ pub struct Tried {
     pub result: Result<Finished, BlockError>,
     /// Failures of the other attempts.
     pub failures: Vec<BlockError>,
-    /// What the way is called in which it came out.
+    /// Name of the successful attempt.
     pub way: String,
 }
 
@@ -57,7 +57,7 @@ impl RetryStrategy {
     /// Those that begin a new try at a cluster whose wall meets that of another.
     pub const APART: [Self; 2] = [Self::FinerNarrower, Self::Finest];
 
-    /// What it is called in a report.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Usual => "as usual",
@@ -71,7 +71,7 @@ impl RetryStrategy {
         }
     }
 
-    /// Whether it may keep vessels apart that come close to each other.
+    /// True if the strategy may separate close vessels.
     fn may_part(self) -> bool {
         matches!(self, Self::Usual | Self::Shifted | Self::Even | Self::FinerNarrower | Self::Finest)
     }
@@ -126,7 +126,7 @@ const FLAT_LAYERS: f64 = 1e-3;
 const SLIM: f64 = 12.0;
 const WAYS_OUT_OF_SLIM: usize = 3;
 
-/// What the worst tetrahedron of a block has to be.
+/// Limits for the worst tetrahedron of a block.
 #[derive(Clone, Copy, Debug)]
 struct Bar {
     ratio: f64,
@@ -188,7 +188,8 @@ fn first_good(
             Ok(made) => {
                 let before = failures.len();
                 let (ratio, dihedral) = (made.certificate.worst_ratio(), made.certificate.least_dihedral());
-                failures.push(BlockError::Flat { block: block.to_owned(), ratio, dihedral });
+                let limits = [bar.ratio, bar.dihedral];
+                failures.push(BlockError::Flat { block: block.to_owned(), ratio, dihedral, limits });
                 if best.as_ref().is_none_or(|(_, _, best)| bar.goodness(&made) > bar.goodness(best)) {
                     best = Some((before, attempt, made));
                 }
@@ -269,7 +270,7 @@ pub fn connector(id: CutId, cut: &Cut, ends: [ConnectorEnd; 2], plan: &MeshPlan)
     divided(id, plan, |params| once::connector(id, cut, ends, params))
 }
 
-/// The same for a connector that is made without its clusters.
+/// Makes a connector without its clusters.
 pub fn free_connector(id: CutId, cut: &Cut, plan: &MeshPlan) -> Tried {
     divided(id, plan, |params| once::free_connector(id, cut, params))
 }
@@ -330,7 +331,7 @@ mod tests {
         let Tried { failures, way, .. } = try_all(&[Some(1e-3), Some(0.8)]);
         assert_eq!(way, "1");
         assert_eq!(try_all(&[None, Some(2e-3), Some(1e-3), None]).way, "1");
-        assert!(failures[0].to_string().contains("all but flat"), "{}", failures[0]);
+        assert!(failures[0].to_string().contains("radius ratio "), "{}", failures[0]);
     }
 
     /// A block of one tetrahedron with edges of 1 but for one of this length.

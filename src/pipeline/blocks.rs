@@ -12,7 +12,7 @@ use crate::block::Cured;
 use crate::partition::{CutId, Layout};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// How many nodes of a block a report lists.
+/// Maximum number of listed nodes of a block.
 const LISTED: usize = 20;
 
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
@@ -31,28 +31,28 @@ pub struct Blocks {
     pub connectors: Vec<Option<BlockResult>>,
     /// Clusters that were made again, in another way than the usual one, because their walls met others.
     pub apart: BTreeSet<u32>,
-    /// What helped blocks that failed at first.
+    /// Strategies that helped failed blocks.
     pub cured: FxHashMap<RecordId, Cured>,
-    /// What was retried.
+    /// Retries.
     pub retries: Vec<Retry>,
-    /// How long they took.
+    /// Times of the blocks.
     pub times: BlockTimes,
 }
 
 impl Blocks {
-    /// Whether any block failed.
+    /// True if any block failed.
     pub fn any_failed(&self) -> bool {
         self.clusters.iter().any(Result::is_err) || self.connectors.iter().any(|made| matches!(made, Some(Err(_))))
     }
 
-    /// Where each block is kept, by its number; none for those that are missing.
+    /// Place of each block in the store, by number; `None` for missing ones.
     pub fn records(&self) -> impl Iterator<Item = Option<RecordId>> {
         let clusters = self.clusters.iter().map(Some);
         let made = clusters.chain(self.connectors.iter().map(Option::as_ref));
         made.map(|made| Some(made?.as_ref().ok()?.record))
     }
 
-    /// What a block is called, by its number: clusters by their ids, then connectors.
+    /// Name of a block by its number: clusters by their ids, then connectors.
     pub fn name(&self, block: u32) -> String {
         match (block as usize).checked_sub(self.clusters.len()) {
             None => format!("cluster {block}"),

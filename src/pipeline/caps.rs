@@ -12,7 +12,7 @@ use anastomesh_mesh::{Cap, Patch, WALL};
 use anastomesh_network::flow::{NetworkFlow, Orders, solve};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// What flows, and how much of it through each inlet.
+/// Fluid properties and flow rate of each inlet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluid {
     /// Mass per volume.
@@ -23,7 +23,7 @@ pub struct Fluid {
     pub inflow: Option<f64>,
 }
 
-/// Which outlets are one patch.
+/// Grouping of outlets into patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outlets {
     /// None: each has its own.
@@ -43,13 +43,13 @@ pub struct CapRow {
     pub id: i32,
     /// The name of the patch.
     pub name: String,
-    /// Where it is.
+    /// The cap.
     pub cap: Cap,
     /// Area of its triangles.
     pub area: f64,
     /// Strahler order of its vessel.
     pub strahler: u32,
-    /// The same by diameter.
+    /// Diameter-defined Strahler order.
     pub order: u32,
     /// Volume per time, in at an inlet, out at an outlet.
     pub flow: f64,
@@ -136,7 +136,7 @@ impl Caps {
         Some(Relabelled::new(mesh, patches, ids))
     }
 
-    /// Whether outlets share patches.
+    /// True if outlets share patches.
     pub fn is_grouped(&self) -> bool {
         self.outlets != Outlets::Separate
     }
@@ -146,7 +146,7 @@ impl Caps {
         self.rows.iter().filter(|row| row.is_inlet).map(|row| row.cap.node).collect()
     }
 
-    /// What a solver is told: of outlets that are one patch, what all of them let through together.
+    /// Boundary conditions for a solver; outlets of one patch are combined.
     pub fn flow(&self) -> Flow {
         let mut caps: BTreeMap<i32, CapFlow> = BTreeMap::new();
         for row in &self.rows {

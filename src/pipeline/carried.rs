@@ -47,7 +47,7 @@ impl Carried {
     }
 }
 
-/// What became of a block. Why it failed names it by its number, which has to be the same.
+/// Result of a block. The reason of a failure names the block by its number, which must be the same.
 fn take(made: &mut BlockResult, same_number: bool) -> Option<BlockResult> {
     match made {
         Ok(kept) => Some(Ok(*kept)),

@@ -1,4 +1,4 @@
-//! What is done about blocks that fail whatever their parameters: their cuts are moved, then they are joined to their
+//! Cures for blocks that fail with all parameters: their cuts are moved, then they are joined to their
 //! neighbours.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams};
 use anastomesh_skeleton::{BranchId, Skeleton};
 
-/// How far the cure of a branch whose cut gave trouble has gone.
+/// Stage of the cure of a branch with a failed cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cure {
     /// The plane at the branch's start is moved towards its end.
@@ -52,7 +52,7 @@ pub(super) fn partition_params(
     params
 }
 
-/// Decides what to do about blocks that failed; says so. Nothing when all is well or nothing is left to try.
+/// Chooses cures for failed blocks and returns them as retries; empty without failures or remaining cures.
 pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<BranchId, Cure>) -> Vec<Retry> {
     let mut found = Vec::new();
     for (i, mesh) in blocks.clusters.iter().enumerate() {
@@ -101,7 +101,7 @@ fn troubled_branches(blocks: &Blocks, cluster: &Cluster, error: &BlockError) -> 
     cluster.ends.iter().filter_map(of_end).collect()
 }
 
-/// The next cure of a branch, and what it is called; none when all have been tried.
+/// Advances to the next cure of a branch and returns its name; `None` if all were tried.
 fn advance(cures: &mut BTreeMap<BranchId, Cure>, branch: BranchId) -> Option<String> {
     let (next, words) = match cures.get(&branch) {
         None => (Cure::Forward, "cut moved"),

@@ -1,4 +1,4 @@
-//! What of a network is known in each place of its mesh: the radius there, which vessel it is, how far along it.
+//! Network data at each point of its mesh: the radius there, which vessel it is, how far along it.
 //!
 //! The vessel of a place is that whose wall is nearest, counted as negative inside.
 
@@ -22,7 +22,7 @@ pub enum Datum {
     Distance,
     /// Number of the branch.
     Branch,
-    /// How many forks there are between it and the inlet.
+    /// Number of bifurcations between the vessel and the inlet.
     Generation,
     /// Strahler's order.
     Strahler,
@@ -37,12 +37,12 @@ impl Datum {
     pub const ALL: [Self; 7] =
         [Self::Radius, Self::Distance, Self::Branch, Self::Generation, Self::Strahler, Self::Node, Self::Ratio];
 
-    /// What it is called where it is asked for.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         self.column().name
     }
 
-    /// What varies along a vessel stands at points, what is one and the same for a vessel or a cell in cells.
+    /// Point data vary along a vessel; cell data are constant per vessel or cell.
     fn column(self) -> Column {
         let (name, at_points, is_integer) = match self {
             Self::Radius => ("radius", true, false),
@@ -57,7 +57,7 @@ impl Datum {
     }
 }
 
-/// What is known of an edge.
+/// Data of an edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct EdgeData {
     branch: u32,
@@ -65,11 +65,11 @@ struct EdgeData {
     strahler: u32,
     /// The ends, as they were numbered in the file.
     nodes: [u32; 2],
-    /// How far along the branch they are.
+    /// Arc length along the branch.
     distances: [f64; 2],
 }
 
-/// What was asked for, of a network and its mesh.
+/// Requested data of a network and its mesh.
 pub struct VesselData {
     data: Vec<Datum>,
     columns: Vec<Column>,
@@ -171,7 +171,7 @@ fn edges(network: &Skeleton, inlets: &BTreeSet<NodeId>) -> Result<Vec<EdgeData>,
     Ok(edges)
 }
 
-/// How many forks lie between each edge and the nearest inlet, by forks.
+/// Number of bifurcations between each edge and the nearest inlet.
 fn generations(network: &Skeleton, adjacency: &Adjacency, inlets: &BTreeSet<NodeId>) -> Vec<u32> {
     let mut found: Vec<Option<u32>> = vec![None; network.edges.len()];
     // Nodes by the generation of the vessel that leads to them, the lowest first.

@@ -1,4 +1,4 @@
-//! What a run says of the network before it meshes it, and of the blocks when they are done.
+//! Notes on the network before meshing, and reports on the blocks afterwards.
 
 use std::io;
 
@@ -13,12 +13,13 @@ use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
 use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// How many places where vessels overlap are spelt out for people.
+/// Maximum number of listed overlaps.
 const LISTED: usize = 3;
 
-/// Says which vessels overlap, the deepest first, each pair of vessels once.
+/// Prints overlapping vessels, deepest first, each pair of vessels once.
 pub(super) fn announce(report: &RunReport, observer: &dyn Progress) {
     let mut places: Vec<&Meeting> = report.overlaps.iter().collect();
     let depth = |m: &Meeting| m.distance / m.radii;
@@ -30,13 +31,18 @@ pub(super) fn announce(report: &RunReport, observer: &dyn Progress) {
     if places.is_empty() {
         return;
     }
-    let (count, pairs) = (places.len(), report.overlaps.len());
     observer.note(&format!(
-        "vessels overlap at {count} places ({pairs} pairs of edges, all in the report); the deepest, edges by their nodes:"
+        "vessels overlap at {} ({}, listed in the report); deepest overlaps (edges by their nodes):",
+        counted(places.len(), "place"),
+        counted(report.overlaps.len(), "edge pair")
     ));
     for m in places.iter().take(LISTED) {
         let [[a, b], [c, d]] = m.edges;
-        observer.note(&format!("  {a}-{b} and {c}-{d}: {} apart, radii {}", number(m.distance), number(m.radii)));
+        observer.note(&format!(
+            "  {a}-{b} and {c}-{d}: distance {}, sum of radii {}",
+            number(m.distance),
+            number(m.radii)
+        ));
     }
 }
 
@@ -45,7 +51,7 @@ fn number(x: f64) -> String {
     if (1e-3..1e6).contains(&x.abs()) || x == 0.0 { format!("{x:.4}") } else { format!("{x:.3e}") }
 }
 
-/// What the expectation of the whole depends on, of all clusters.
+/// Data of all clusters that determine the expected topology.
 #[derive(Default)]
 pub(super) struct Topology {
     /// Clusters with loops that are filled by their own lumen, and how many.
@@ -57,7 +63,7 @@ pub(super) struct Topology {
 /// Clusters of which reports are read at a time.
 const READ: usize = 1 << 14;
 
-/// Reads what reports say of each cluster that is there, in order.
+/// Reads the report data of each finished cluster, in order.
 fn each_cluster(shop: &Workshop, blocks: &Blocks, mut found: impl FnMut(usize, Option<About>)) -> io::Result<()> {
     let about = |made: &BlockResult| made.as_ref().ok().map(|kept| shop.about(kept)).transpose();
     for (first, some) in (0..).step_by(READ).zip(blocks.clusters.chunks(READ)) {
@@ -67,7 +73,7 @@ fn each_cluster(shop: &Workshop, blocks: &Blocks, mut found: impl FnMut(usize, O
     Ok(())
 }
 
-/// Says of the blocks what there is to say; what helped some of them is taken over.
+/// Fills the report with the data of the blocks.
 pub(super) fn describe_blocks(
     skeleton: &Skeleton,
     shop: &Workshop,

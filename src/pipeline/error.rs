@@ -1,4 +1,4 @@
-//! Why a network could not be meshed.
+//! Errors of meshing runs.
 
 use std::io;
 
@@ -9,33 +9,34 @@ use super::store::StoreError;
 use super::terminals::NotATerminal;
 use crate::partition::PartitionError;
 use anastomesh_mesh::progress::Cancelled;
+use anastomesh_mesh::units::counted;
 
-/// Why there is no mesh.
+/// Reasons why a run produces no mesh.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The plan cannot be run.
+    /// The plan is invalid.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// A root that is none.
+    /// A requested root is not a terminal.
     #[error(transparent)]
     Root(#[from] NotATerminal),
     /// The network could not be partitioned.
     #[error(transparent)]
     Partition(#[from] PartitionError),
-    /// The machine is too small for it.
+    /// Memory or disk space is insufficient.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// Finished blocks cannot be kept or read.
+    /// Finished blocks cannot be stored or read.
     #[error(transparent)]
     Store(StoreError),
-    /// Blocks failed to the end; the report lists them.
-    #[error("{} block(s) could not be meshed", .0.failed.len())]
+    /// Blocks failed in every attempt; the report lists them.
+    #[error("{} could not be meshed", counted(.0.failed.len(), "block"))]
     BlocksFailed(Box<RunReport>),
-    /// Caps are not where they should be: a fault of the program.
-    #[error("{0}; this is a fault of the program")]
+    /// Caps are not on the boundary: an internal error.
+    #[error("{0}; this is an internal error: please report it")]
     Label(String),
-    /// It was told to stop. Blocks that were finished are in the store.
+    /// The run was cancelled. Finished blocks are in the store.
     #[error("cancelled")]
     Cancelled,
 }

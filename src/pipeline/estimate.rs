@@ -1,4 +1,4 @@
-//! What a network will take, before anything is meshed: tetrahedra, memory, disk.
+//! Estimates before meshing: tetrahedra, memory, disk space.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,11 +14,11 @@ use anastomesh_skeleton::Skeleton;
 const TETS: f64 = 3.9;
 const POWER: f64 = 2.85;
 
-/// The same for tubes by template: fitted to straight tubes at ρ = 3 to 12.
+/// Values for tubes by template, fitted to straight tubes at ρ = 3 to 12.
 const TETS_OF_TUBE: f64 = 4.4;
 const POWER_OF_TUBE: f64 = 2.94;
 
-/// How they fall with edges on the axis that are longer than those of the wall, at forks and in tubes: fitted to chains of forks and
+/// Exponents of the core ratio, at forks and in tubes: fitted to chains of forks and
 /// straight tubes with edges of 1 to 3 at ρ = 3 and 5.
 const POWER_OF_CORE: f64 = -0.7;
 const POWER_OF_CORE_OF_TUBE: f64 = -0.9;
@@ -44,7 +44,7 @@ const WRITTEN_WIDE_PER_TET: f64 = 23.0;
 /// Vertex numbers of a tetrahedron. Those of boundary faces come on top: what is written is rather less than estimated.
 const NUMBERS_PER_TET: f64 = 4.0;
 
-/// What a run is expected to take.
+/// Expected cost of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Tetrahedra of the whole.
@@ -108,28 +108,28 @@ impl Estimate {
 pub enum TooLarge {
     /// The largest block does not fit into the memory that is allowed.
     #[error(
-        "the largest block would have about {:.3e} tetrahedra and need {} of memory, {} are allowed (the \
-         whole mesh would have about {:.3e} tetrahedra); allow more memory, or give a smaller rho",
+        "the largest block needs {1} of memory, more than the limit of {2} (about {0:.3e} tetrahedra, the whole mesh \
+         about {3:.3e}); raise the memory limit, or give a smaller rho",
         estimate.largest_block_tets, gibibytes(estimate.largest_block_bytes), gibibytes(*memory), estimate.tets
     )]
     Block {
-        /// What the run would take.
+        /// Expected cost of the run.
         estimate: Estimate,
         /// Bytes of memory that are allowed.
         memory: u64,
     },
     /// The whole mesh, which has to be held, does not fit.
     #[error(
-        "the mesh would have about {:.3e} tetrahedra and need {} of memory, as {why} hold it whole; {} are allowed; \
-         give {instead}, or allow more memory",
+        "{why} need the whole mesh in memory: {1}, more than the limit of {2} (about {0:.3e} tetrahedra); give {instead}, or \
+         raise the memory limit",
         estimate.tets, gibibytes(*bytes), gibibytes(*memory)
     )]
     Whole {
-        /// What the run would take.
+        /// Expected cost of the run.
         estimate: Estimate,
-        /// What holds it whole.
+        /// Format that needs the whole mesh in memory.
         why: &'static str,
-        /// What does not.
+        /// Formats that do not.
         instead: &'static str,
         /// Bytes that the whole mesh needs.
         bytes: u64,
@@ -138,18 +138,18 @@ pub enum TooLarge {
     },
     /// The disk is too small.
     #[error(
-        "the mesh would have about {:.3e} tetrahedra; blocks and mesh would need {} on {place}, where {} are free; \
-         make room, name another place, or give a smaller rho",
+        "blocks and mesh need {1} on {place}, which has {2} free (about {0:.3e} tetrahedra); free some space, name another \
+         folder, or give a smaller rho",
         estimate.tets, gibibytes(*bytes), gibibytes(*free)
     )]
     Disk {
-        /// What the run would take.
+        /// Expected cost of the run.
         estimate: Estimate,
         /// Bytes that are needed there.
         bytes: u64,
         /// Bytes that are free there.
         free: u64,
-        /// Which disk.
+        /// Name of the disk.
         place: &'static str,
     },
 }
@@ -206,7 +206,7 @@ fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost 
     of_tets(per_radius * radii + of_layers(radii, plan))
 }
 
-/// Tetrahedra of layers along so many radii.
+/// Number of layer tetrahedra along a length in radii.
 fn of_layers(radii: f64, plan: &MeshPlan) -> f64 {
     let layers = plan.layers.map_or(0, |layers| layers.count);
     3.0 * f64::from(layers) * WALL * plan.rho * plan.rho * radii

@@ -1,4 +1,4 @@
-//! What a network would take: cut into blocks, nothing meshed.
+//! Forecast of the cost of a run from its partition, without meshing.
 
 use super::cures::partition_params;
 use super::error::RunError;

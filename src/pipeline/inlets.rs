@@ -1,6 +1,7 @@
 //! Inlets of a network: the terminals that are named, and in each component without one the terminal of largest radius.
 
 use anastomesh_io::network::NodeNames;
+use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
 use serde::Serialize;
 
@@ -8,27 +9,27 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InletReason {
-    /// The caller named it.
+    /// Named by the caller.
     Asked,
-    /// The file has it as root.
+    /// Root in the file.
     RootOfFile,
-    /// It is the widest of its component.
+    /// Widest terminal of its component.
     Widest,
 }
 
 /// A terminal that becomes an inlet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inlet {
-    /// Its number in the file, from 0.
+    /// Node index in the file, from 0.
     #[serde(skip)]
     pub original: u32,
-    /// As the file calls it.
+    /// Name of the node in the file.
     pub node: String,
-    /// Where it is.
+    /// Position of the node.
     pub position: [f64; 3],
     /// Radius of the vessel there.
     pub radius: f64,
-    /// Reason why it is one.
+    /// Reason for the choice.
     pub why: InletReason,
 }
 
@@ -47,8 +48,8 @@ pub struct Inlets {
 /// Named inlet that is not a terminal of the network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", match vessels {
-    Some(vessels) => format!("node {node} is no terminal, as {vessels} vessels meet there; name a node with one vessel"),
-    None => format!("node {node} is not in the network; name a terminal as the file does"),
+    Some(vessels) => format!("node {node} is not a terminal ({} meet there); name a node with one vessel", counted(*vessels, "vessel")),
+    None => format!("node {node} is not in the network; give the name or number of a terminal in the file"),
 })]
 pub struct NoTerminal {
     /// Name of the node as given.
@@ -57,7 +58,7 @@ pub struct NoTerminal {
     pub vessels: Option<usize>,
 }
 
-/// Adds the inlets that nobody names: in each component without a named one, the terminal of largest radius (of equals,
+/// Adds missing inlets: in each component without a named one, the terminal of largest radius (of equals,
 /// the first).
 ///
 /// `reasons` holds one entry per node.
@@ -74,11 +75,12 @@ pub(super) fn complete(skeleton: &Skeleton, adjacency: &Adjacency, reasons: &mut
 }
 
 impl Inlets {
-    /// Chooses the inlets of a cleaned network: the nodes in `asked`; if there are none, the roots of the file; and in each
-    /// component without an inlet the widest terminal.
+    /// Chooses the inlets of a cleaned network: the nodes in `asked`, or else the roots of the file.
+    ///
+    /// In each component without an inlet, the widest terminal is added.
     ///
     /// # Errors
-    /// When a node that is asked for is no terminal.
+    /// A requested node is not a terminal.
     pub fn of(
         skeleton: &Skeleton,
         names: &NodeNames,

@@ -14,7 +14,7 @@ use anastomesh_tet::parts::Watch;
 /// A finished block in the store, and what it adds to the whole. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredBlock {
-    /// Where it is.
+    /// Place in the store.
     pub record: RecordId,
     /// Points that are its own, those that it shares with blocks before it left out.
     pub points: u32,
@@ -24,7 +24,7 @@ pub struct StoredBlock {
 /// A block, or why there is none: said elsewhere, as there are millions of blocks and few that fail.
 pub type BlockResult = Result<StoredBlock, Box<BlockError>>;
 
-/// What every block of a run is made from, and the store that takes it.
+/// Common input of all blocks of a run, and their store.
 #[derive(Clone, Copy, Debug)]
 pub struct Workshop<'a> {
     pub skeleton: &'a Arc<Skeleton>,
@@ -106,7 +106,7 @@ impl Workshop<'_> {
         Ok(StoredBlock { record, points: sizes.points - sizes.shared, tets: sizes.tets })
     }
 
-    /// What reports say of a block.
+    /// Report data of a block.
     ///
     /// # Errors
     /// When it cannot be read.

@@ -1,4 +1,4 @@
-//! What a run is asked to do.
+//! Parameters of a run.
 
 use crate::block::{BlockParams, EndStyle};
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
@@ -6,7 +6,7 @@ use anastomesh_skeleton::{LEAST_SIZE, SizeAt};
 use anastomesh_tet::{Layers, LayersError};
 use std::borrow::Cow;
 
-/// How blocks meet at a cut.
+/// Joint style at cuts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointStyle {
@@ -35,20 +35,20 @@ pub enum JointStyle {
 pub struct MeshPlan {
     /// Resolution ρ: voxels across the thinnest vessel of a cluster; larger is finer.
     pub rho: f64,
-    /// How far edges follow the radius of wider vessels: they grow with it to this power. 1: ρ voxels across every vessel;
+    /// Exponent of edge lengths over the vessel radius. 1: ρ voxels across every vessel;
     /// 0: edges are as short all over a cluster as its thinnest vessel asks for.
     pub follow: f64,
-    /// How much longer than wide tetrahedra are, along vessels, in what is made by template: tubes between forks and caps.
+    /// Aspect ratio of tetrahedra along template tubes between bifurcations and caps.
     pub stretch: f64,
     /// Shorter edges at forks, and tubes stretched as the network says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_at: Option<SizeAt>,
-    /// How much longer than at the wall edges are on the axis of a vessel.
+    /// Ratio of edge lengths on the axis to those at the wall.
     pub core: f64,
     /// Layers along the wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Layers>,
-    /// How blocks meet at a cut.
+    /// Joint style at cuts.
     pub joint: JointStyle,
     /// Leave woven joints as the blocks have them instead of smoothing across them.
     pub frozen_joints: bool,
@@ -114,38 +114,28 @@ impl Default for MeshPlan {
 #[non_exhaustive]
 pub enum PlanError {
     /// Woven joints are an optional part of the program.
-    #[error(
-        "this program was built without woven joints: give --joint disc, or build it with the cargo feature `woven`"
-    )]
+    #[error("this build has no woven joints: give --joint disc, or build with the cargo feature `woven`")]
     NoWovenJoints,
     /// ρ outside of what makes sense.
-    #[error("rho = {0} is not usable: it must be a number of at least 2.5 (3 to 5 are usual; larger is finer)")]
+    #[error("rho = {0} is out of range: give at least 2.5 (usual are 3 to 5; larger is finer)")]
     Rho(f64),
     /// The power outside of what makes sense.
-    #[error("follow = {0} is not usable: it must lie between 0 (edges as short everywhere) and 1 (in proportion)")]
+    #[error("follow = {0} is out of range: give 0 (uniform edge length) to 1 (proportional to the radius)")]
     Follow(f64),
     /// A stretch outside of what makes sense.
-    #[error("stretch = {0} is not usable: it must lie between 1 (as long as wide) and {MOST_STRETCH}")]
+    #[error("stretch = {0} is out of range: give 1 (isotropic) to {MOST_STRETCH}")]
     Stretch(f64),
     /// Woven joints, or none, have no tubes by template.
-    #[error(
-        "stretch = {0} needs joints by discs: no vessel is a tube by template where joints are woven or nothing is cut"
-    )]
+    #[error("stretch = {0} needs the joint style disc")]
     StretchWoven(f64),
     /// Edges at forks outside of what makes sense.
-    #[error(
-        "size-at = {0} is not usable: it must lie between {LEAST_SIZE} (edges at forks a quarter as long) and 1 (as rho has them)"
-    )]
+    #[error("size-at = {0} is out of range: give {LEAST_SIZE} (shortest edges at bifurcations) to 1 (no change)")]
     SizeAt(f64),
     /// Woven joints, or none, have no discs that stay as they are.
-    #[error(
-        "size-at needs joints by discs: where joints are woven or nothing is cut, edges are as long as rho has them"
-    )]
+    #[error("size-at needs the joint style disc")]
     SizeAtWoven,
     /// Two that say how long tubes are stretched.
-    #[error(
-        "stretch = {stretch} and size-at by the array '{array}' both say how long tubes are stretched: leave one out"
-    )]
+    #[error("stretch = {stretch} and the size-at array '{array}' both set the stretch of tubes: omit one")]
     StretchTwice {
         /// The one.
         stretch: f64,
@@ -153,29 +143,29 @@ pub enum PlanError {
         array: String,
     },
     /// Edges in the core outside of what makes sense.
-    #[error("core = {0} is not usable: it must lie between {least} (half as long on axes as at the wall) and {most}",
+    #[error("core = {0} is out of range: give {least} to {most} (ratio of edge lengths, axis to wall)",
         least = CORES[0], most = CORES[1])]
     Core(f64),
     /// Layers that cannot be.
     #[error(transparent)]
     Layers(#[from] LayersError),
     /// Layers are in filled blocks that meet in discs.
-    #[error("layers need joints by discs, and blocks that are filled")]
+    #[error("layers need the joint style disc and a volume mesh")]
     LayersWoven,
 }
 
 /// Edges longer than this, in edges across, follow no taper and no bend.
 pub const MOST_STRETCH: f64 = 20.0;
-/// How much longer edges may be on axes than at the wall.
+/// Range of the ratio of edge lengths on the axis to those at the wall.
 const CORES: [f64; 2] = [0.5, 4.0];
 
 impl MeshPlan {
-    /// Whether connectors are made between the ends of their clusters, and so after them.
+    /// True if connectors are made after their clusters.
     pub fn weaves_joints(&self) -> bool {
         self.joint == JointStyle::Woven
     }
 
-    /// Whether joints are smoothed once the blocks are together.
+    /// True if joints are smoothed after assembly.
     pub fn smooths_joints(&self) -> bool {
         self.weaves_joints() && !self.frozen_joints
     }
@@ -210,7 +200,7 @@ impl MeshPlan {
     }
 
     /// # Errors
-    /// When a parameter is out of its range.
+    /// If a parameter is out of its range.
     pub fn validate(&self) -> Result<(), PlanError> {
         if self.weaves_joints() && !cfg!(feature = "woven") {
             return Err(PlanError::NoWovenJoints);

@@ -1,4 +1,4 @@
-//! What a run of the mesher did.
+//! Report of a meshing run.
 
 mod text;
 
@@ -15,7 +15,7 @@ pub struct Retry {
     pub nodes: Vec<u32>,
     /// The stage that failed and why.
     pub reason: String,
-    /// What was done about it.
+    /// Remedy.
     pub remedy: String,
 }
 
@@ -30,7 +30,7 @@ pub struct FailedBlock {
     pub reason: String,
     /// Terminals that could not be capped, if that is why.
     pub uncapped: Vec<u32>,
-    /// Whether its thinnest vessel asks for a grid of more cells than there may be.
+    /// True if its thinnest vessel needs more grid cells than the limit.
     pub too_fine: bool,
     /// File with the input that reproduces the failure, when one could be written.
     pub dump: Option<String>,
@@ -61,7 +61,7 @@ pub struct FilledLoops {
     pub block: String,
     /// Nodes of the block, as indices in the file that was read (the first 20).
     pub nodes: Vec<u32>,
-    /// How many of its loops.
+    /// Number of filled loops.
     pub loops: i64,
 }
 
@@ -72,7 +72,7 @@ pub struct ThinBlock {
     pub block: String,
     /// Nodes of the block, as indices in the file that was read (the first 20).
     pub nodes: Vec<u32>,
-    /// How thin, and where.
+    /// Thickness and position.
     #[serde(flatten)]
     pub layers: ThinLayers,
 }
@@ -120,7 +120,7 @@ impl RunReport {
         self.fused.iter().flat_map(|f| &f.uncapped).chain(self.failed.iter().flat_map(|f| &f.uncapped)).copied()
     }
 
-    /// Whether the walls keep the vessels: every axis within, and, unless they were to fuse, vessels that are apart as two
+    /// True if the walls contain the vessels: every axis within, and, unless they were to fuse, vessels that are apart as two
     /// lumens.
     pub fn keeps_vessels(&self, fuse: bool) -> bool {
         self.fused.iter().all(|f| f.astray.outside.is_none() && (fuse || f.astray.fused.is_none()))
@@ -161,10 +161,10 @@ pub struct RunReport {
     pub failed: Vec<FailedBlock>,
     /// Size of the mesh.
     pub mesh: MeshSize,
-    /// What the run was expected to take.
+    /// Expected cost of the run.
     pub estimate: super::Estimate,
     /// Wall time.
     pub(crate) stages: Vec<StageTime>,
-    /// How long blocks took.
+    /// Times of the blocks.
     pub(crate) block_times: BlockTimes,
 }

@@ -30,7 +30,7 @@ use anastomesh_tet::parts::Watch;
 /// Maximum changes of the partition because of blocks that fail.
 const MAX_PARTITION_CHANGES: usize = 6;
 
-/// What a run works with.
+/// Environment of a run.
 pub struct RunContext<'a> {
     /// Vessels of the network that overlap.
     pub overlaps: &'a Overlaps,
@@ -102,7 +102,7 @@ impl RunContext<'_> {
         self.clock.time(progress, Stage::Partition, 0, kept)
     }
 
-    /// What blocks are expected to take: clusters by their ids, then connectors.
+    /// Expected costs of blocks: clusters by their ids, then connectors.
     pub(super) fn costs(&self, partition: &Layout) -> Vec<Cost> {
         (0..(partition.clusters_len() + partition.cuts_len()) as u32).map(|i| self.cost(partition, i)).collect()
     }
@@ -224,14 +224,14 @@ impl RunContext<'_> {
     }
 }
 
-/// What the blocks of a partition are made with, on all threads.
+/// Shared data for making the blocks of a partition, on all threads.
 struct Making<'a> {
     shop: Workshop<'a>,
     partition: &'a Layout,
     tangled: &'a [bool],
     watch: Watch<'a>,
     stopwatch: Stopwatch,
-    /// What helped blocks that failed at first.
+    /// Strategies that helped failed blocks.
     heard: Mutex<FxHashMap<RecordId, Cured>>,
 }
 

@@ -1,4 +1,4 @@
-//! Which blocks the branches run through.
+//! Blocks along each branch.
 
 use crate::partition::{CutId, Layout};
 use anastomesh_skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
@@ -54,7 +54,7 @@ pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Over
     tangled
 }
 
-/// Whether two blocks hold branches of vessels that overlap.
+/// Pairs of blocks with branches of overlapping vessels.
 #[derive(Debug, Default)]
 pub struct Overlapping {
     pairs: Vec<[BranchId; 2]>,
@@ -74,7 +74,7 @@ impl Overlapping {
         Self { pairs, branches }
     }
 
-    /// Whether these two do.
+    /// True if these two blocks have overlapping vessels.
     pub fn do_overlap(&self, [x, y]: [u32; 2]) -> bool {
         let of = |block: u32| {
             let first = self.branches.partition_point(|(b, _)| *b < block);

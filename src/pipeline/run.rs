@@ -35,11 +35,11 @@ use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 pub struct Meshed {
     /// The mesh of the network, its boundary labelled.
     pub mesh: VolumeMesh,
-    /// What the network asks of it.
+    /// Expected topology.
     pub expectation: Expectation,
     /// The result of the check.
     pub check: CheckReport,
-    /// What was done.
+    /// Report of the run.
     pub report: RunReport,
     /// Network that was meshed: the given one with nodes of more than three vessels split.
     pub network: Arc<Skeleton>,
@@ -51,11 +51,11 @@ pub struct Meshed {
 pub struct Stored<'a> {
     /// The mesh, to be read in passes.
     pub whole: Whole<'a>,
-    /// What the network asks of it.
+    /// Expected topology.
     pub expectation: Expectation,
     /// The result of the check.
     pub check: CheckReport,
-    /// What was done.
+    /// Report of the run.
     pub report: RunReport,
     /// Network that was meshed: the given one with nodes of more than three vessels split.
     pub network: Arc<Skeleton>,
@@ -208,7 +208,7 @@ fn mesh_smoothed(
     Ok(Meshed { mesh, expectation, check, report, network })
 }
 
-/// What is to be meshed, and where.
+/// Input and store of a run.
 struct Job<'a, 'b> {
     skeleton: Arc<Skeleton>,
     overlaps: Overlaps,
@@ -266,7 +266,7 @@ impl<'a, 'b> Job<'a, 'b> {
         Ok(whole)
     }
 
-    /// What was done, and what the network asks of its mesh.
+    /// Report of the run and expected topology.
     fn described(self, mut blocks: Blocks) -> io::Result<(RunReport, Expectation)> {
         let mut report = self.report.clone();
         let topology = describe_blocks(&self.skeleton, &self.shop(), &mut blocks, &mut report)?;
@@ -309,7 +309,7 @@ fn prepare(network: &Arc<Skeleton>, report: &mut RunReport) -> (Arc<Skeleton>, O
     (skeleton, overlaps)
 }
 
-/// What the network asks of its mesh. Loops that are filled by their own lumen are none of the mesh.
+/// Expected topology of the mesh. Loops that are filled by their own lumen are not counted.
 fn expectation(skeleton: &Skeleton, blocks: &Blocks, topology: &Topology) -> Expectation {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);

@@ -1,4 +1,4 @@
-//! What is known of the walls of all blocks, kept true while some of them are made again: only these, and what is near
+//! Cached facts about the walls of all blocks. After some are remade, only these are updated, and what is near
 //! them, is looked at.
 
 use std::io;
@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 
 /// Walls that were looked at, by the numbers of their blocks: clusters by their ids, then connectors.
 pub struct Seen {
-    /// Where each block is kept, as far as it is there.
+    /// Place of each finished block in the store.
     records: Vec<Option<RecordId>>,
     /// Boxes of their walls.
     boxes: Vec<Aabb>,
@@ -38,7 +38,7 @@ impl Seen {
         Self { records, boxes, meetings }
     }
 
-    /// The same of other blocks, of which most are those that were there before. `whole`: all of them.
+    /// Updates the facts for other blocks, most of which are unchanged. `whole`: all of them.
     ///
     /// # Errors
     /// When a block cannot be read.

@@ -23,7 +23,7 @@ use anastomesh_network::split_shared;
 use anastomesh_skeleton::{BranchId, Overlaps, Skeleton};
 use anastomesh_tet::parts::Watch;
 
-/// What a shard did.
+/// Report of a shard.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ShareReport {
     /// Blocks of the whole network.
@@ -36,7 +36,7 @@ pub struct ShareReport {
     pub failed: usize,
     /// Seconds that its blocks took.
     pub seconds: f64,
-    /// What all blocks are expected to take.
+    /// Expected costs of all blocks.
     pub estimate: Estimate,
     /// Wall time.
     pub stages: Vec<StageTime>,
@@ -68,14 +68,14 @@ pub fn make_share(
     Ok(report)
 }
 
-/// What all shards have to know of the first round besides its partition. One of them finds it out.
+/// Data of the first round that all shards need besides the partition. One shard computes them.
 #[derive(Debug, Serialize, Deserialize)]
 struct Tasks {
     /// Branches that are to be in one cluster.
     together: BTreeSet<[BranchId; 2]>,
     /// Of each cluster, whether vessels overlap in it.
     tangled: Vec<bool>,
-    /// How much there is to do for each block: clusters by their ids, then connectors.
+    /// Cost of each block: clusters by their ids, then connectors.
     weights: Vec<u64>,
     estimate: Estimate,
 }

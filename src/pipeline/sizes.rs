@@ -1,25 +1,26 @@
-//! What is said of edges that are not as long as the resolution has them.
+//! Note on edges whose length differs from the resolution.
 
 use super::plan::{MOST_STRETCH, MeshPlan};
 use crate::partition::Layout;
 use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{LEAST_SIZE, SizeAt, Skeleton};
 
-/// Says how many forks are finer and how many tubes stretched, and what of it was asked for beyond the limits.
+/// Reports the numbers of finer forks and stretched tubes, and of those that exceed the limits.
 pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan, observer: &dyn Progress) {
     let Some(sizes) = &plan.size_at else { return };
     let forks: Vec<f64> = partition.clusters().flat_map(|cluster| cluster.fine).map(|fork| fork.factor).collect();
     let mut parts = vec![match range(&forks) {
-        Some(range) => format!("edges at {} fork(s) are {range} times as long", forks.len()),
-        None => "edges are shorter at no fork".to_owned(),
+        Some(range) => format!("edge length at {} multiplied by {range}", counted(forks.len(), "fork")),
+        None => "no shorter edges at forks".to_owned(),
     }];
     if let SizeAt::Nodes(_) = sizes {
         let asked = partition.clusters().map(|cluster| cluster.size).chain(partition.cuts().map(|cut| cut.size));
         let asked: Vec<f64> = asked.flatten().filter(|&size| size > 1.0).collect();
         let tubes: Vec<f64> = asked.iter().map(|&size| size.min(MOST_STRETCH)).collect();
         parts.push(match range(&tubes) {
-            Some(range) => format!("{} tube(s) are stretched by {range}", tubes.len()),
-            None => "no tube is stretched".to_owned(),
+            Some(range) => format!("{} stretched by {range}", counted(tubes.len(), "tube")),
+            None => "no stretched tubes".to_owned(),
         });
         let adjacency = skeleton.adjacency();
         let is_below =
@@ -28,14 +29,16 @@ pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan,
         let above = asked.iter().filter(|&&size| size > MOST_STRETCH).count();
         if below + above > 0 {
             parts.push(format!(
-                "{below} fork(s) with less than {LEAST_SIZE} and {above} tube(s) with more than {MOST_STRETCH} are held there"
+                "limited to the range {LEAST_SIZE} to {MOST_STRETCH}: {} and {}",
+                counted(below, "fork"),
+                counted(above, "tube")
             ));
         }
     }
     observer.note(&format!("size-at: {}", parts.join("; ")));
 }
 
-/// `0.5` or `0.3 to 0.9`; none of no numbers.
+/// Range of numbers as `0.5` or `0.3 to 0.9`; `None` without numbers.
 fn range(values: &[f64]) -> Option<String> {
     let least = values.iter().copied().reduce(f64::min)?;
     let most = values.iter().copied().reduce(f64::max)?;

@@ -15,9 +15,7 @@ pub struct TerminalPatches {
 
 /// A root was asked for that is not a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "node {node} was given as root, but no terminal has that number; name a node with one edge, counted from 0 in the file's order"
-)]
+#[error("root node {node} (from 0) is not a terminal; name a node with one edge")]
 pub struct NotATerminal {
     /// The node as it was given.
     pub node: u32,

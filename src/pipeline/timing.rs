@@ -42,7 +42,7 @@ impl Clock {
     }
 }
 
-/// How long blocks took: in a histogram, as nobody reads a hundred thousand figures.
+/// Histogram of the times of blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BlockTimes {
     /// Seconds of all clusters together.

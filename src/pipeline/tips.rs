@@ -5,11 +5,11 @@ use crate::partition::{Cluster, EndKind};
 use crate::surface::{CapError, CapFailure};
 use anastomesh_skeleton::NodeId;
 
-/// How far a tip is moved, in its radii, one after the other: outwards, where another vessel of its branch point is in the
+/// Displacements of a tip to try in turn, in its radii: outwards, where another vessel of its branch point is in the
 /// way, or back, where it ends in another vessel.
 pub const MOVES: [f64; 8] = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 3.0];
 
-/// What is left of the last piece of a vessel whose tip is drawn back, in radii.
+/// Minimum length of the last piece of a vessel whose tip is shortened, in radii.
 const LEFT: f64 = 0.5;
 
 /// The ends of a cluster that could not be capped, ascending.
@@ -45,7 +45,7 @@ pub fn to_blame(cluster: &Cluster, error: &BlockError) -> Vec<NodeId> {
     }
 }
 
-/// Whether a tip lies within another vessel, so that nothing helps where it is.
+/// True if a tip lies within another vessel, so that no parameter helps.
 pub fn is_buried(error: &BlockError) -> bool {
     matches!(error, BlockError::Cap { source: CapError::End { reason: CapFailure::Buried, .. }, .. })
 }
@@ -74,7 +74,7 @@ pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     if buried(&result).next().is_some() { None } else { Some(result) }
 }
 
-/// How far tips were moved, in words.
+/// Text on the displacement of tips.
 pub fn described(moves: &[(u32, f64)]) -> String {
     let mut radii: Vec<f64> = moves.iter().map(|(_, radii)| *radii).collect();
     radii.sort_unstable_by(f64::total_cmp);

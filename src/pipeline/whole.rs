@@ -33,7 +33,7 @@ pub struct Whole<'a> {
     plan: Cow<'a, Numbering>,
 }
 
-/// Who says whether to stop.
+/// Listener that can stop the run.
 struct CancelOnly<'a>(&'a dyn Progress);
 
 impl std::fmt::Debug for CancelOnly<'_> {
@@ -137,7 +137,7 @@ impl<'a> Whole<'a> {
         Ok(numbers)
     }
 
-    /// The same of a part of which nothing else is asked.
+    /// Reads a part for a single request.
     fn numbers_alone(&self, part: u32) -> io::Result<Vec<u32>> {
         self.numbers(part, &Record::open(&self.record(self.plan.part(part))?)?.sizes())
     }

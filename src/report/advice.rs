@@ -14,23 +14,22 @@ pub fn advice(run: &RunReport, invalid: bool, refined: bool, rho: f64) -> Vec<St
     }
     if !run.overlaps.is_empty() || !run.fused.is_empty() {
         lines.push(if refined {
-            "vessels overlap that could not be moved apart: --residual fuse takes them as one and counts the loops"
+            "some overlapping vessels could not be moved apart: --residual fuse meshes them as one lumen and counts the loops"
                 .into()
         } else {
             "vessels overlap or come too close: --refine moves them apart".into()
         });
     }
     if run.fused.iter().any(|block| !block.uncapped.is_empty()) {
-        lines.push("tips end in other vessels: --touching retract draws them back, --touching join joins them".into());
+        lines.push("tips end in other vessels: --touching retract shortens them, --touching join connects them".into());
     }
     if run.failed.iter().any(|block| block.too_fine) {
         lines.push(
-            "the radii in a block differ too much for one grid, whose cells follow the thinnest vessel: leave out what is that thin, \
-             or try a smaller --rho"
+            "the radii in a block differ too much for one grid: remove the thinnest vessels, or try a smaller --rho"
                 .into(),
         );
     } else if run.overlaps.is_empty() || refined {
-        lines.push(format!("finer blocks may come out where these did not: --rho {}", (FINER * rho).ceil()));
+        lines.push(format!("a finer resolution may help: --rho {}", (FINER * rho).ceil()));
     }
     lines
 }

@@ -2,7 +2,7 @@
 
 use crate::pipeline::Inlet;
 use anastomesh_mesh::geometry::Aabb;
-use anastomesh_mesh::units::{digits, grouped, percent};
+use anastomesh_mesh::units::{counted, digits, grouped, percent};
 use anastomesh_skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};
 use serde::Serialize;
 use std::fmt;
@@ -187,8 +187,8 @@ impl NetworkInfo {
     }
 
     fn write_cleaning(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        for (count, what) in self.cleaned.counts() {
-            writeln!(f, "cleaned: {count} {what}")?;
+        for change in self.cleaned.changes() {
+            writeln!(f, "cleaned: {change}")?;
         }
         Ok(())
     }
@@ -200,35 +200,25 @@ impl NetworkInfo {
         let short = [m.shorter_than_2, m.shorter_than_2_5, m.shorter_than_3].map(percent);
         writeln!(f, "edges shorter than 2, 2.5, 3 radii: {}", short.join(", "))?;
         writeln!(f, "pairs of edges at a node under pi/10: {} ({})", grouped(m.narrow.count), percent(m.narrow))?;
-        writeln!(
-            f,
-            "vessels that turn back at a node (under 30 degrees): {} of {}",
-            grouped(m.folds.count),
-            grouped(m.folds.of)
-        )?;
+        writeln!(f, "folds at nodes (angle under 30 degrees): {} of {}", grouped(m.folds.count), grouped(m.folds.of))?;
         writeln!(
             f,
             "edges that satisfy equation 11: {}, equation 12: {}",
             percent(m.long_enough),
             percent(m.open_enough)
         )?;
-        writeln!(f, "inner branches that can be cut: {} of {}", grouped(m.cuttable.count), grouped(m.cuttable.of))
+        writeln!(f, "inner branches long enough for a cut: {} of {}", grouped(m.cuttable.count), grouped(m.cuttable.of))
     }
 
     fn write_overlaps(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let all = &self.overlaps.pairs;
         let beside = all.iter().filter(|o| o.shares_node()).count();
-        writeln!(
-            f,
-            "overlaps: {} pairs of edges, {} of them leave one node side by side",
-            grouped(all.len()),
-            grouped(beside)
-        )?;
+        writeln!(f, "overlaps: {}, of which {} share a node", counted(all.len(), "edge pair"), grouped(beside))?;
         for o in all.iter().take(LISTED) {
             let [[a, b], [c, d]] = o.nodes.map(|ends| ends.map(|n| n.0));
             let at = <[f64; 3]>::from(nalgebra::center(&o.points[0], &o.points[1])).map(digits).join(" ");
             let (distance, radii) = (digits(o.distance), digits(o.radii));
-            writeln!(f, "  {a}-{b} and {c}-{d}: {distance} apart, radii {radii}, at {at}")?;
+            writeln!(f, "  {a}-{b} and {c}-{d}: distance {distance}, sum of radii {radii}, at {at}")?;
         }
         if all.len() > LISTED {
             writeln!(f, "  and {} more (--json lists all)", grouped(all.len() - LISTED))?;
@@ -236,19 +226,19 @@ impl NetworkInfo {
         let [met, far] = [self.overlaps.unconnected.len(), self.overlaps.far].map(grouped);
         writeln!(
             f,
-            "          {met} pairs that share no node meet, neighbours along a vessel included; {far} of them far"
+            "          edge pairs without a common node that touch: {met}, of which {far} are distant along the vessels"
         )?;
         if !self.overlaps.complete {
-            writeln!(f, "          (not all pairs were looked at: there are too many)")?;
+            writeln!(f, "          (incomplete: too many pairs to test all)")?;
         }
         Ok(())
     }
 
     fn write_crowded(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let all = &self.crowded_terminals;
-        writeln!(f, "terminals closer than the sum of their radii: {} pairs", grouped(all.len()))?;
+        writeln!(f, "terminals closer than the sum of their radii: {}", counted(all.len(), "pair"))?;
         for CrowdedTerminals { nodes: [a, b], distance, radii } in all.iter().take(LISTED) {
-            writeln!(f, "  {} and {}: {} apart, radii {}", a.0, b.0, digits(*distance), digits(*radii))?;
+            writeln!(f, "  {} and {}: distance {}, sum of radii {}", a.0, b.0, digits(*distance), digits(*radii))?;
         }
         if all.len() > LISTED {
             writeln!(f, "  and {} more (--json lists all)", grouped(all.len() - LISTED))?;
@@ -263,7 +253,7 @@ impl fmt::Display for NetworkInfo {
             writeln!(f, "read: {note}")?;
         }
         self.write_cleaning(f)?;
-        writeln!(f, "nodes: {} ({} terminals)", grouped(self.nodes), grouped(self.terminals))?;
+        writeln!(f, "nodes: {} ({})", grouped(self.nodes), counted(self.terminals, "terminal"))?;
         writeln!(f, "edges: {} in {} branches", grouped(self.edges), grouped(self.branches))?;
         let [components, largest] = [self.components, self.largest_component].map(grouped);
         writeln!(f, "components: {components} (the largest has {largest} nodes)")?;
@@ -274,7 +264,7 @@ impl fmt::Display for NetworkInfo {
         writeln!(f, "radius: {}", self.radius)?;
         writeln!(
             f,
-            "edge length: {}; {} edges are shorter than their radius",
+            "edge length: {}; shorter than the radius: {}",
             self.edge_length,
             grouped(self.edges_shorter_than_radius)
         )?;
@@ -283,7 +273,7 @@ impl fmt::Display for NetworkInfo {
         writeln!(f, "total length: {}", digits(self.total_length))?;
         let [low, high] = self.bounding_box.map(|p| p.map(digits).join(" "));
         writeln!(f, "bounding box: {low} to {high}")?;
-        writeln!(f, "unit: perhaps {} (a guess from the largest radius and the extent)", self.unit_guess)?;
+        writeln!(f, "unit: probably {} (estimated from the largest radius and the extent)", self.unit_guess)?;
         self.write_metrics(f)?;
         self.write_overlaps(f)?;
         self.write_crowded(f)
@@ -321,7 +311,7 @@ mod tests {
         assert_eq!(info.unit_guess, UnitGuess::Millimetres);
         assert_eq!(info.overlaps.pairs.iter().filter(|o| !o.shares_node()).count(), 2);
         let text = info.to_string();
-        assert!(text.contains("read: a note\ncleaned: 1 repeated edges dropped\nnodes: 7 (3 terminals)\n"), "{text}");
+        assert!(text.contains("read: a note\ncleaned: 1 repeated edge removed\nnodes: 7 (3 terminals)\n"), "{text}");
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!(json["loops"], 1);
         assert_eq!(json["overlaps"]["pairs"][0]["points"][0].as_array().map(Vec::len), Some(3));

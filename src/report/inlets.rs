@@ -8,9 +8,9 @@ impl fmt::Display for Inlet {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let at = self.position.map(number).join(" ");
         let why = match self.why {
-            InletReason::Asked => "as asked",
-            InletReason::RootOfFile => "the root in the file",
-            InletReason::Widest => "the widest terminal of its component; --root names another",
+            InletReason::Asked => "requested",
+            InletReason::RootOfFile => "root in the file",
+            InletReason::Widest => "widest terminal of its component; --root selects another",
         };
         write!(f, "node {} at {at}, radius {} ({why})", self.node, number(self.radius))
     }
@@ -26,8 +26,8 @@ impl Inlets {
         }
         for (node, vessels) in self.inner.iter().take(LISTED) {
             lines.push(format!(
-                "root: node {node} of the file has {vessels} vessels and lies inside the network, so it is no inlet; put a \
-                 vessel before it, or name a terminal with --root"
+                "root node {node} of the file is not a terminal ({vessels} vessels meet there): add a vessel, or name a terminal \
+                 with --root"
             ));
         }
         lines
@@ -44,7 +44,7 @@ mod tests {
             Inlet { original: 0, node: "7".into(), position: [0.0; 3], radius: 1.0, why: InletReason::RootOfFile };
         let found = Inlets { list: vec![inlet], roots: vec![0], inner: vec![("5".into(), 2)] };
         let [inlet, inner] = &found.remarks()[..] else { panic!("{:?}", found.remarks()) };
-        assert!(inlet.contains("node 7 at 0 0 0, radius 1 (the root in the file)"));
-        assert!(inner.contains("node 5 of the file has 2 vessels"));
+        assert!(inlet.contains("node 7 at 0 0 0, radius 1 (root in the file)"));
+        assert!(inner.contains("node 5 of the file is not a terminal (2 vessels"));
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::plot::{Panel, Series};
 use super::rows::{Ended, row};
-use anastomesh_mesh::units::{grouped, number, percent as share};
+use anastomesh_mesh::units::{counted, grouped, number, percent as share};
 use anastomesh_network::{HistorySample, RefineReport};
 
 /// Pairs that a summary lists.
@@ -21,20 +21,18 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     let iterations = report.history.last().map_or(0, |sample| sample.iteration);
     let radius = 0.448 * report.unit;
     let moved = match report.chosen {
-        None => "nothing: no state is as good as the input in what is to be held (--hold)".into(),
+        None => "nothing: no state satisfies --hold".into(),
         Some(_) if d.max == 0.0 => "nothing".into(),
         Some(best) => {
             let [median, most, radius] = [d.median, d.max, radius].map(number);
-            format!(
-                "by {median} in the median, {most} at most (a median radius is {radius}); best of {iterations} iterations: {best}"
-            )
+            format!("median {median}, max {most} (median radius {radius}); iteration {best} of {iterations}")
         }
     };
     out += &row("moved", &moved);
-    let [before, after] = [given.overlaps, result.overlaps].map(grouped);
-    out += &row("overlaps", &format!("pairs: {after} ({before} before)"));
+    let (before, after) = (grouped(given.overlaps), counted(result.overlaps, "pair"));
+    out += &row("overlaps", &format!("{after} ({before} before)"));
     let [before, after] = [given, result].map(|figures| share(figures.metrics.cuttable.percent() / 100.0));
-    out += &row("cuts", &format!("{after} of inner branches have room for one ({before} before)"));
+    out += &row("cuts", &format!("{after} of inner branches are long enough ({before} before)"));
     if !report.worse.is_empty() {
         out += &row("worse", &format!("{} (--hold prevents it)", report.worse_names()));
     }
@@ -45,8 +43,7 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     out += &ended.rows(&[]);
     let left = match report.residual.left {
         0 => "no vessels overlap".into(),
-        1 => "a pair overlaps still".into(),
-        n => format!("{} pairs overlap still", grouped(n)),
+        n => format!("{} left", counted(n, "overlapping pair")),
     };
     out + &left + " (-v shows all figures)\n"
 }
@@ -55,7 +52,7 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
 fn changes(report: &RefineReport) -> String {
     let of = |count, what: &str| if count > 0 { Some(format!("{} {what}", grouped(count))) } else { None };
     let all: Vec<String> =
-        [of(report.nodes_split, "split"), of(report.bends, "bends put in")].into_iter().flatten().collect();
+        [of(report.nodes_split, "split"), of(report.bends, "added in bends")].into_iter().flatten().collect();
     if all.is_empty() { String::new() } else { format!("; {}", all.join(", ")) }
 }
 

@@ -42,14 +42,14 @@ impl Ended {
         // Remaining time: reading, refinement, and earlier meshes of the run.
         let staged: f64 = longest.iter().map(|stage| stage.seconds).sum();
         if !longest.is_empty() {
-            longest.push(StageTime { stage: "beforehand", seconds: self.seconds - staged });
+            longest.push(StageTime { stage: "other", seconds: self.seconds - staged });
         }
         longest.retain(|stage| stage.seconds >= NOTICED.max(MENTIONED * self.seconds));
         longest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
         let told: Vec<String> =
             longest.iter().take(STAGES).map(|s| format!("{} {}", s.stage, seconds_of(s.seconds))).collect();
         let stages = if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) };
-        let memory = self.memory.map_or_else(String::new, |bytes| format!("; {} of memory at most", bytes_of(bytes)));
+        let memory = self.memory.map_or_else(String::new, |bytes| format!("; max memory {}", bytes_of(bytes)));
         format!("{}{stages}{memory}", seconds_of(self.seconds))
     }
 }

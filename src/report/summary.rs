@@ -69,7 +69,7 @@ impl Summary<'_> {
         for failed in self.run.failed.iter().take(SPELT_OUT) {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
             if let Some(dump) = &failed.dump {
-                writeln!(out, "    its input is in {dump}")?;
+                writeln!(out, "    input written to {dump}")?;
             }
         }
         more(out, self.run.failed.len())?;
@@ -78,11 +78,11 @@ impl Summary<'_> {
             let (block, nodes) = (&fused.block, &fused.nodes);
             if let Some(at) = fused.astray.outside {
                 let place = format!("{:.4} {:.4} {:.4}", at.x, at.y, at.z);
-                writeln!(out, "  {block} (nodes {nodes:?}): an axis is not within the wall at {place}")?;
+                writeln!(out, "  {block} (nodes {nodes:?}): a vessel axis lies outside the wall at {place}")?;
             }
             if let Some([p, _]) = fused.astray.fused {
                 let place = format!("{:.4} {:.4} {:.4}", p.x, p.y, p.z);
-                writeln!(out, "  {block} (nodes {nodes:?}): vessels became one lumen at {place}")?;
+                writeln!(out, "  {block} (nodes {nodes:?}): vessels fused into one lumen at {place}")?;
             }
         }
         more(out, astray().count())
@@ -96,7 +96,7 @@ pub fn of_mesh(check: &CheckReport) -> String {
 }
 
 /// Options that show more faults.
-const MORE_FAULTS: &str = " (-v shows ten, --report where they are)";
+const MORE_FAULTS: &str = " (-v lists ten, --report shows their positions)";
 
 /// Result of a check: passed conditions, failed ones, verdict. With `listed`, all are printed elsewhere.
 pub fn of_check(check: &CheckReport, listed: bool) -> String {
@@ -109,9 +109,9 @@ fn vessels(fidelity: &Fidelity) -> String {
     let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
     if fidelity.is_moved() {
         let [median, most] = [axis.median, axis.worst].map(digits);
-        return format!("moved by {median} radii in the median, {most} at most; {volume}");
+        return format!("axis displacement median {median} radii, max {most}; {volume}");
     }
-    format!("wall {:.1} % off the radius in the median, {volume}", 100.0 * wall.median)
+    format!("median radius error {:.1} %, {volume}", 100.0 * wall.median)
 }
 
 fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {
@@ -124,16 +124,15 @@ fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {
 /// Expected cost of a run with this number of threads.
 pub fn forecast(forecast: &Forecast, threads: usize) -> String {
     let Forecast { clusters, connectors, largest_nodes, estimate, .. } = forecast;
-    let [clusters, connectors] = [*clusters, *connectors].map(grouped);
+    let [clusters, connectors] = [(*clusters, "cluster"), (*connectors, "connector")].map(|(n, what)| counted(n, what));
     let [written, stored] = [estimate.written_bytes, estimate.stored_bytes].map(bytes_of);
     let seconds = seconds_of(forecast.seconds(threads));
-    let mut out =
-        row("blocks", &format!("{clusters} clusters (largest {largest_nodes} nodes), {connectors} connectors"));
+    let mut out = row("blocks", &format!("{clusters} (largest {}), {connectors}", counted(*largest_nodes, "node")));
     out += &row("mesh", &format!("about {} tetrahedra", rounded(estimate.tets)));
-    out += &row("time", &format!("about {seconds} on {threads} threads"));
+    out += &row("time", &format!("about {seconds} on {}", counted(threads, "thread")));
     out += &row("memory", &format!("about {}", bytes_of(forecast.memory(threads))));
-    out += &row("disk", &format!("about {written} for the mesh, {stored} for blocks until it is written"));
-    out.push_str("nothing was meshed (--dry-run)\n");
+    out += &row("disk", &format!("about {written} for the mesh, {stored} for temporary blocks"));
+    out.push_str("estimate only (--dry-run)\n");
     out
 }
 
@@ -170,13 +169,13 @@ mod tests {
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors
-mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volume 0.62500
+mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 0.62500
 ";
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains("\nfile     tree.vtu (1.0 MB)\n"), "{text}");
-        assert!(text.contains("\ntime     3 min (blocks 2 min, write 22 s); 250 MB of memory at most\n"), "{text}");
-        assert!(text.contains("\nFAIL every tetrahedron is positive: 9 found\n         tetrahedron 0 at "), "{text}");
-        assert!(text.contains("\n         and 6 more (-v shows ten, --report where they are)\n"), "{text}");
+        assert!(text.contains("\ntime     3 min (blocks 2 min, write 22 s); max memory 250 MB\n"), "{text}");
+        assert!(text.contains("\nFAIL 9 tetrahedra are inverted or flat\n         tetrahedron 0 at "), "{text}");
+        assert!(text.contains("\n         and 6 more (-v lists ten, --report shows their positions)\n"), "{text}");
         assert!(text.ends_with("\nNOT valid\n"), "{text}");
     }
 
@@ -203,11 +202,11 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volu
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors, 5 FAILED
   FAILED cluster 0 (nodes [0]): no room
-    its input is in d/0.json
+    input written to d/0.json
   FAILED cluster 1 (nodes [1]): no room
-    its input is in d/1.json
+    input written to d/1.json
   FAILED cluster 2 (nodes [2]): no room
-    its input is in d/2.json
+    input written to d/2.json
     and 2 more (-v lists them)
 time     3 min (blocks 2 min, write 22 s)
 ";
@@ -229,8 +228,8 @@ blocks   59,000 clusters (largest 12 nodes), 58,999 connectors
 mesh     about 181.0 million tetrahedra
 time     about 5 min on 2 threads
 memory   about 120 MB
-disk     about 4.2 GB for the mesh, 3.1 GB for blocks until it is written
-nothing was meshed (--dry-run)
+disk     about 4.2 GB for the mesh, 3.1 GB for temporary blocks
+estimate only (--dry-run)
 ";
         assert_eq!(found, expected);
     }

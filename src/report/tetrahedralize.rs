@@ -4,7 +4,7 @@ use super::rows::{Ended, row};
 use crate::pipeline::StageTime;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::quality::{TetQuality, dihedral_range, volume6};
-use anastomesh_mesh::units::{digits, grouped};
+use anastomesh_mesh::units::{counted, digits, grouped, tetrahedra};
 use anastomesh_mesh::{Bounds, face_key};
 use anastomesh_mesh::{TET_FACES, TetMesh};
 use anastomesh_tet::LayerSummary;
@@ -67,22 +67,22 @@ impl LeftOut {
 
     /// Text with one line per element type; empty if nothing is left out.
     pub fn text(&self) -> String {
-        const WHY: &str = "outside of what is filled, or in a hole (--strict refuses that)";
+        const WHY: &str = "outside the filled region, or in a hole (--strict refuses this)";
         let from = self.counted_from;
         let mut lines = String::new();
         if self.triangles > 0 {
             let faces: Vec<String> = self.faces.iter().map(ToString::to_string).collect();
             let (n, of, named) = (self.triangles, self.triangles_of, Self::named(&faces));
-            let _ = writeln!(lines, "left out: {WHY}: {n} {of} {named} (counted from {from})");
+            let _ = writeln!(lines, "omitted: {n} {of} {WHY}: {named} (counted from {from})");
         }
         if !self.segments.is_empty() {
             let ends: Vec<String> = self.segments.iter().map(|[a, b]| format!("{a}-{b}")).collect();
-            let (n, named) = (ends.len(), Self::named(&ends));
-            let _ = writeln!(lines, "left out: {WHY}: {n} segments {named} (points counted from {from})");
+            let (segments, named) = (counted(ends.len(), "segment"), Self::named(&ends));
+            let _ = writeln!(lines, "omitted: {segments} {WHY}: {named} (points counted from {from})");
         }
         if self.unused_points > 0 {
-            let n = self.unused_points;
-            let _ = writeln!(lines, "points of the input that no tetrahedron has: {n}; they keep their numbers");
+            let points = counted(self.unused_points, "input point");
+            let _ = writeln!(lines, "unused: {points} without tetrahedra, kept with their numbers");
         }
         lines
     }
@@ -194,15 +194,20 @@ impl LayerReport {
     fn text(&self) -> String {
         let Self { tets, inside: q, thin, thinnest, without } = self;
         let mut out = format!(
-            "layers: {tets} tetrahedra; inside of them radius ratio: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
+            "layers: {}; radius ratio of all others: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
              dihedral angles {:.2}° to {:.2}°\n",
-            q.mean, q.percentile_1, q.min, q.dihedral_min, q.dihedral_max
+            tetrahedra(*tets),
+            q.mean,
+            q.percentile_1,
+            q.min,
+            q.dihedral_min,
+            q.dihedral_max
         );
         if let Some((point, share)) = thinnest {
             let _ = writeln!(
                 out,
-                "  less than half as thick as asked for at {thin} points, for want of room; thinnest at point {point}: \
-                 {:.2} % of it",
+                "  thinner than half of the request at {}; thinnest at point {point}: {:.2} %",
+                counted(*thin, "point"),
                 100.0 * share
             );
         }
@@ -211,8 +216,8 @@ impl LayerReport {
             let more = if without.len() > Self::NAMED { ", …" } else { "" };
             let _ = writeln!(
                 out,
-                "  none at {} points, from which no way in leads away from all triangles: {}{more}",
-                without.len(),
+                "  no layers at {} without an inward direction: {}{more}",
+                counted(without.len(), "point"),
                 named.join(", ")
             );
         }
@@ -327,13 +332,13 @@ impl TetReport {
         let mut stays = false;
         for b in &self.bounds {
             let on = match (self.to_split, b.on_input) {
-                (Some(_), n) if n > 0 => format!(", {} of them on triangles of the input", grouped(n)),
+                (Some(_), n) if n > 0 => format!(", of which {} at fixed input triangles", grouped(n)),
                 _ => String::new(),
             };
             stays |= !on.is_empty();
             let _ = match b.beyond {
                 0 => writeln!(out, "  {} {}: met", b.bound, b.value),
-                n => writeln!(out, "  {} {}: not met by {} tetrahedra{on}", b.bound, b.value, grouped(n)),
+                n => writeln!(out, "  {} {}: violated by {}{on}", b.bound, b.value, tetrahedra(n)),
             };
         }
         if let Some(s) = self.size_unmet {
@@ -342,12 +347,11 @@ impl TetReport {
             let [longer, edges] = [s.longer, s.edges].map(grouped);
             let _ = writeln!(
                 out,
-                "  edges of length {size}: not met at the boundary, where {longer} of {edges} edges of the input are longer, \
-                 up to {longest:.6}"
+                "  edge length {size}: exceeded at the boundary by {longer} of {edges} input edges, max {longest:.6}"
             );
         }
         if let (true, Some(how)) = (stays, self.to_split) {
-            let _ = writeln!(out, "  note: the triangles of the input stay as they are; {how} lets them be split");
+            let _ = writeln!(out, "  note: input triangles are fixed; {how} allows splitting them");
         }
     }
 
@@ -359,27 +363,33 @@ impl TetReport {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let (i, m, r) = (&self.input, &self.mesh, &self.recovery);
-        let facets = i.facets.map_or_else(String::new, |n| format!(" of {} facets", grouped(n)));
-        let [points, triangles] = [i.points, i.triangles].map(grouped);
-        let beside = [extra(i.segments, "segments"), extra(i.holes, "holes")].concat();
-        out += &row("input", &format!("{points} points, {triangles} triangles{facets}{beside}"));
+        let facets = i.facets.map_or_else(String::new, |n| format!(" of {}", counted(n, "facet")));
+        let (points, triangles) = (counted(i.points, "point"), counted(i.triangles, "triangle"));
+        let beside = [extra(i.segments, "segment"), extra(i.holes, "hole")].concat();
+        out += &row("input", &format!("{points}, {triangles}{facets}{beside}"));
         for line in &self.repaired {
             let _ = writeln!(out, "  repaired: {line}");
         }
         out.push_str(&self.left_out.text());
-        let [tets, points, added] = [m.tets, m.points, m.added_points].map(grouped);
-        let volume = digits(m.volume);
-        out += &row("mesh", &format!("{tets} tetrahedra, {points} points ({added} added), volume {volume}"));
+        let (tets, points) = (tetrahedra(m.tets), counted(m.points, "point"));
+        let (added, volume) = (grouped(m.added_points), digits(m.volume));
+        out += &row("mesh", &format!("{tets}, {points} ({added} added), volume {volume}"));
         if i.triangles > 0 {
-            let inside = extra(m.interior_faces, "of them inside");
-            let [faces, edges, triangles, points] =
-                [m.faces, r.missing_edges, r.missing_triangles, r.steiner_points].map(grouped);
-            let missing = format!("{edges} edges and {triangles} triangles recovered with {points} points");
-            out += &row("surface", &format!("{faces} faces{inside}; {missing}"));
+            let inside =
+                if m.interior_faces > 0 { format!(", {} inside", grouped(m.interior_faces)) } else { String::new() };
+            let [faces, edges, triangles, points] = [
+                (m.faces, "face"),
+                (r.missing_edges, "edge"),
+                (r.missing_triangles, "triangle"),
+                (r.steiner_points, "point"),
+            ]
+            .map(|(count, what)| counted(count, what));
+            let missing = format!("{edges} and {triangles} recovered with {points}");
+            out += &row("surface", &format!("{faces}{inside}; {missing}"));
         }
         self.write_regions(all, &mut out);
         if let Some(q) = &self.quality {
-            let ratio = format!("radius ratio {:.2} in the mean, {:.2} at least", q.mean, q.min);
+            let ratio = format!("radius ratio mean {:.2}, min {:.2}", q.mean, q.min);
             out += &row("shape", &format!("{ratio}; dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max));
         }
         out.push_str(&self.layers.as_ref().map_or_else(String::new, LayerReport::text));
@@ -394,18 +404,18 @@ impl TetReport {
     fn write_regions(&self, all: bool, out: &mut String) {
         let shown = if all { self.regions.len() } else { Self::REGIONS.min(self.regions.len()) };
         for region in &self.regions[..shown] {
-            let (tets, volume) = (grouped(region.tets), digits(region.volume));
-            let _ = writeln!(out, "  region {}: {tets} tetrahedra, volume {volume}", region.id);
+            let (tets, volume) = (tetrahedra(region.tets), digits(region.volume));
+            let _ = writeln!(out, "  region {}: {tets}, volume {volume}", region.id);
         }
         if shown < self.regions.len() {
-            let _ = writeln!(out, "  and {} regions more (-v lists them)", grouped(self.regions.len() - shown));
+            let _ = writeln!(out, "  and {} more (-v lists them)", counted(self.regions.len() - shown, "region"));
         }
     }
 }
 
 /// Formats a count as `, 3 holes`, or as nothing if it is 0.
 fn extra(count: usize, what: &str) -> String {
-    if count == 0 { String::new() } else { format!(", {} {what}", grouped(count)) }
+    if count == 0 { String::new() } else { format!(", {}", counted(count, what)) }
 }
 
 #[cfg(test)]
@@ -432,8 +442,8 @@ mod tests {
         let report = TetReport { bounds: results, to_split: Some("--split"), ..TetReport::default() };
         assert!(!report.bounds_met());
         let text = report.text(false, &Ended::default());
-        assert!(text.contains("volume at most 0.1: not met by 1 tetrahedra, 1 of them on triangles of the input\n"));
-        assert!(text.contains("--split lets them be split"));
+        assert!(text.contains("volume at most 0.1: violated by 1 tetrahedron, of which 1 at fixed input triangles\n"));
+        assert!(text.contains("--split allows splitting them"));
         let free = TetReport { to_split: None, ..report };
         assert!(
             !free.text(false, &Ended::default()).contains("input\n  note")
@@ -451,10 +461,8 @@ mod tests {
         assert_eq!(of(0.5).unwrap().longer, 3);
         let report = TetReport { size_unmet: Some(unmet), to_split: Some("--split"), ..TetReport::default() };
         let text = report.text(false, &Ended::default());
-        assert!(
-            text.contains("edges of length 1: not met at the boundary, where 2 of 3 edges of the input are longer")
-        );
-        assert!(text.contains("--split lets them be split"));
+        assert!(text.contains("edge length 1: exceeded at the boundary by 2 of 3 input edges, max 2.236068"));
+        assert!(text.contains("--split allows splitting them"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What a run is asked to do.
+//! Builder of a run.
 
 use super::error::MeshingError;
 use super::networks::Networks;

@@ -2,6 +2,7 @@
 
 use super::networks::Networks;
 use crate::pipeline::{NoTerminal, PlanError, RunError, RunReport, StoreError};
+use anastomesh_mesh::units::counted;
 use anastomesh_network::RefineError;
 use anastomesh_skeleton::SkeletonError;
 use std::io;
@@ -20,7 +21,7 @@ pub enum MeshingError {
     #[error(transparent)]
     Refine(#[from] RefineError),
     /// Blocks failed in every attempt.
-    #[error("{} block(s) could not be meshed", .report.failed.len())]
+    #[error("{} could not be meshed", counted(.report.failed.len(), "block"))]
     Blocks {
         /// Report of the attempt, with the failed blocks.
         report: Box<RunReport>,

@@ -81,7 +81,7 @@ impl Networks {
         told
     }
 
-    /// Whether all vessels of the prepared network that overlap leave one branch point.
+    /// True if all overlapping vessels of the prepared network leave one bifurcation.
     pub(super) fn overlaps_at_forks_alone(&self) -> bool {
         let network = &self.prepared;
         let adjacency = network.adjacency();

@@ -22,7 +22,7 @@ const HELD_PER_TET: f64 = 150.0;
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     pub refine: Option<RefineParams>,
-    /// Whether terminals that could not be capped are retracted.
+    /// True if terminals that could not be capped are retracted.
     pub retracts: bool,
     pub fluid: Fluid,
     pub max_displacement: Option<f64>,

@@ -22,7 +22,7 @@ const MAX_MEASURED_DISPLACEMENT: f64 = 1.0;
 pub struct NetworkMesh<M> {
     /// The mesh: in memory, or to be read from its store in passes.
     pub mesh: M,
-    /// What the network asks of the mesh.
+    /// Expected topology of the mesh.
     pub expectation: Expectation,
     /// Report of the validity check.
     pub check: CheckReport,
@@ -64,7 +64,7 @@ pub enum Defect {
 }
 
 impl<M> NetworkMesh<M> {
-    /// Whether the mesh is valid and keeps the vessels.
+    /// True if the mesh is valid and contains the vessels.
     pub fn is_valid(&self) -> bool {
         !self.defects.iter().any(|defect| matches!(defect, Defect::Invalid | Defect::VesselsNotKept))
     }

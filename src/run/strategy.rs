@@ -89,7 +89,7 @@ impl Failure {
 
 type Outcome<'a> = Result<Candidate<'a>, Failure>;
 
-/// Where and how a network is meshed, and the attempts so far.
+/// Store and parameters of a run, and its attempts so far.
 pub(super) struct Meshing<'a, 'b> {
     pub store: &'a Store,
     pub plan: &'b MeshPlan,
@@ -165,7 +165,7 @@ impl<'a> Meshing<'a, '_> {
         }
     }
 
-    /// Whether the mesh of a fallback is sound, and nearer to the given volume where that was the fault.
+    /// True if the mesh of a fallback is valid, and its volume error smaller if that was the fault.
     fn is_better(&self, candidate: &Candidate, fault: Fault) -> bool {
         let Candidate { stored, networks, .. } = candidate;
         self.fault_of(stored).is_none()
@@ -233,7 +233,7 @@ impl<'a> Meshing<'a, '_> {
     }
 }
 
-/// Whether a mesh would be valid if each terminal had its cap.
+/// True if a mesh would be valid if each terminal had its cap.
 fn lacks_but_caps(check: &CheckReport) -> bool {
     check.failed().all(|line| line.line == Line::CapPerTerminal)
 }

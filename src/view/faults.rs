@@ -41,7 +41,7 @@ impl Fault {
             let fault = |o: &Offender| {
                 let ids: Vec<String> = o.ids.iter().take(NAMED).map(ToString::to_string).collect();
                 let more = if o.ids.len() > NAMED { " …" } else { "" };
-                let what = format!("not so: {statement} ({} {}{more})", ids_of(o.kind), ids.join(" "));
+                let what = format!("failed: {statement} ({} {}{more})", ids_of(o.kind), ids.join(" "));
                 Some(Self { what, place: o.position?, extent: 0.0 })
             };
             line.offenders.iter().filter_map(fault).collect::<Vec<_>>()

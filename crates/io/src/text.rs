@@ -27,7 +27,7 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum TextFault {
     /// A word is not a number.
-    #[error("line {line}: '{text}' stands where {what} has to be: correct it")]
+    #[error("line {line}: expected {what}, found '{text}': correct it")]
     NotANumber {
         /// Line of the file, from 1.
         line: usize,
@@ -37,7 +37,7 @@ pub enum TextFault {
         text: String,
     },
     /// A coordinate is infinite or NaN.
-    #[error("line {line}: {what} is '{text}'; it must be a finite number: correct it")]
+    #[error("line {line}: {what} is '{text}', not a finite number: correct it")]
     NotFinite {
         /// Line of the file, from 1.
         line: usize,
@@ -58,8 +58,8 @@ pub enum TextFault {
     },
     /// A count exceeds the rest of the file.
     #[error(
-        "line {line}: {what} is {count}, more than the rest of the file can hold; \
-         correct it, or write or copy the file again if it is cut short"
+        "line {line}: {what} is {count}, more than the rest of the file contains; \
+         correct it, or copy the file again if it is truncated"
     )]
     CountTooLarge {
         /// Line of the file, from 1.
@@ -79,9 +79,7 @@ pub enum TextFault {
         missing: &'static str,
     },
     /// The file ends before it is complete.
-    #[error(
-        "line {line}: the file ends before {missing}: a count in it is wrong, or it was not written or copied completely"
-    )]
+    #[error("line {line}: the file ends before {missing}: a count is wrong, or the file is truncated")]
     CutShort {
         /// Last line.
         line: usize,
@@ -90,7 +88,7 @@ pub enum TextFault {
         missing: &'static str,
     },
     /// The file has more data than announced.
-    #[error("line {line} lies behind all that the counts of the file announce: correct the counts or remove it")]
+    #[error("line {line} exceeds the counts of the file: correct the counts, or remove the line")]
     Surplus {
         /// Line of the file, from 1.
         line: usize,

@@ -1,4 +1,4 @@
-//! What the readers of XML files share.
+//! Functions shared by readers of XML files.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -9,7 +9,7 @@ use std::borrow::Cow;
 #[non_exhaustive]
 pub enum XmlFault {
     /// The bytes are not UTF-8 text.
-    #[error("no XML: byte {byte} is not text; is it a {expected}?")]
+    #[error("not XML: byte {byte} is not text; is it a {expected}?")]
     NotText {
         /// Position of the first byte that is not text.
         byte: usize,
@@ -17,7 +17,7 @@ pub enum XmlFault {
         expected: &'static str,
     },
     /// The XML parser gave up.
-    #[error("no well-formed XML at byte {byte}: {source}; correct the file, or copy it again if it was cut short")]
+    #[error("invalid XML at byte {byte}: {source}; correct the file, or copy it again if it is truncated")]
     Syntax {
         /// Position in the file.
         byte: u64,
@@ -25,7 +25,7 @@ pub enum XmlFault {
         source: quick_xml::Error,
     },
     /// A tag's attributes cannot be read.
-    #[error("the attributes of the tag before byte {byte} cannot be read: write them as name=\"value\"")]
+    #[error("invalid attributes of the tag before byte {byte}: write them as name=\"value\"")]
     BadAttribute {
         /// Position behind the tag.
         byte: u64,

@@ -29,7 +29,7 @@ pub struct FacetTriangles {
 pub enum FacetError {
     /// Two of its segments cross between their ends.
     #[error(
-        "its segments {} {} and {} {} cross: add the point where they do, or correct the polygons",
+        "its segments {} {} and {} {} cross: add their intersection point, or correct the polygons",
         first[0], first[1], second[0], second[1]
     )]
     Crossing {
@@ -54,7 +54,7 @@ pub enum FacetError {
         point: u32,
     },
     /// A polygon refers to a missing point.
-    #[error("it names the point {point}, which does not exist")]
+    #[error("it refers to the missing point {point}")]
     NoSuchPoint {
         /// Its index.
         point: u32,

@@ -18,6 +18,11 @@ pub fn counted(count: usize, what: &str) -> String {
     format!("{} {what}{}", grouped(count), if count == 1 { "" } else { "s" })
 }
 
+/// Formats a number of tetrahedra.
+pub fn tetrahedra(count: usize) -> String {
+    if count == 1 { "1 tetrahedron".into() } else { format!("{} tetrahedra", grouped(count)) }
+}
+
 /// Formats five significant digits, independent of the unit.
 pub fn digits(x: f64) -> String {
     let magnitude = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };

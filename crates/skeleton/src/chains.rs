@@ -20,7 +20,7 @@ impl Chains {
         self.first.len() - 1
     }
 
-    /// Returns `true` if there are none.
+    /// Returns `true` if the list is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

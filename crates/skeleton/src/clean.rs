@@ -2,6 +2,7 @@
 
 use super::{Edge, EdgeId, Node, NodeId, Skeleton, SkeletonError};
 use anastomesh_mesh::geometry::DisjointSets;
+use anastomesh_mesh::units::counted;
 use serde::Serialize;
 
 /// Maximum length of an edge to be contracted, relative to its radius. The rounding of coordinates determines the
@@ -31,17 +32,18 @@ impl CleanReport {
         *self == Self::default()
     }
 
-    /// Changes as counts with descriptions; only those that occurred.
-    pub fn counts(&self) -> Vec<(usize, &'static str)> {
+    /// Changes with their counts, as sentences; only those that occurred.
+    pub fn changes(&self) -> Vec<String> {
         let done = [
-            (self.coincident.len(), "nodes at the place of another one merged"),
-            (self.zero_length.len(), "edges without length dropped"),
-            (self.contracted.len(), "edges shorter than a millionth of their radius contracted"),
-            (self.repeated.len(), "repeated edges dropped"),
-            (self.isolated.len(), "nodes without an edge dropped"),
-            (self.blended.len(), "jumps of the radius inside a branch evened out"),
+            (self.coincident.len(), "node", "merged with another at the same position"),
+            (self.zero_length.len(), "edge", "of zero length removed"),
+            (self.contracted.len(), "edge", "shorter than 1e-6 radii contracted"),
+            (self.repeated.len(), "repeated edge", "removed"),
+            (self.isolated.len(), "node", "without edges removed"),
+            (self.blended.len(), "radius jump", "within a branch smoothed"),
         ];
-        done.into_iter().filter(|(count, _)| *count > 0).collect()
+        let happened = done.into_iter().filter(|(count, ..)| *count > 0);
+        happened.map(|(count, what, change)| format!("{} {change}", counted(count, what))).collect()
     }
 }
 
@@ -50,7 +52,7 @@ impl CleanReport {
 ///
 /// Merged nodes keep the largest radius; edges keep their own radii. If the file has one radius per edge, the radius
 /// jumps between edges: at a node of valence 2 both sides get the mean. At junctions the jump stays: a thin side branch
-/// leaves a thick vessel with its own radius from the start, and the surface blends the two. Centrelines that all start
+/// leaves a thick vessel with its own radius, and the surface blends the two. Centrelines that all start
 /// at the inlet become one graph as far as their points coincide.
 ///
 /// ```

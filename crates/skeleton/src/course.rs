@@ -56,7 +56,7 @@ impl<'a> Courses<'a> {
         self.chains.len()
     }
 
-    /// Returns `true` if there are none.
+    /// Returns `true` if the list is empty.
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
@@ -174,7 +174,7 @@ impl Course {
         Some(Tube { a: whole.point(t), b: whole.point(u), ra: whole.radius(t), rb: whole.radius(u) })
     }
 
-    /// Length of the straight run before an end plane: a radius, or less on a very short branch.
+    /// Length of the straight run before an end plane: a radius, or less on a short branch.
     fn run_length(&self, s: f64, way: Way) -> f64 {
         self.radius(s, way).min(0.375 * self.length())
     }

@@ -2,6 +2,7 @@
 
 use super::{EdgeId, NodeId};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 
 /// Reason why a skeleton is unusable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,15 +10,15 @@ use anastomesh_mesh::geometry::Point3;
 pub enum SkeletonError {
     /// No edge, so no vessel.
     #[error(
-        "the network has {nodes} node(s) and no edge of a length above zero: there is no vessel to mesh; \
-         it takes two nodes at different places and an edge between them"
+        "the network has no vessel ({}, no edge of positive length): connect two nodes at different positions",
+        counted(*nodes, "node")
     )]
     NoVessel {
         /// Number of nodes.
         nodes: usize,
     },
     /// An edge refers to a missing node.
-    #[error("edge {} names node {}, but there are only {nodes} nodes (numbered from 0)", edge.0, node.0)]
+    #[error("edge {} refers to node {}, but only nodes 0 to {} exist", edge.0, node.0, nodes.saturating_sub(1))]
     UnknownNode {
         /// The edge.
         edge: EdgeId,
@@ -35,7 +36,7 @@ pub enum SkeletonError {
         position: Point3,
     },
     /// A radius is zero, negative, infinite or NaN.
-    #[error("node {original} has the radius {radius}: radii must be finite and above zero")]
+    #[error("node {original} has the radius {radius}: radii must be finite and positive")]
     BadNodeRadius {
         /// The node, as numbered in the file (from 0).
         original: u32,
@@ -43,7 +44,7 @@ pub enum SkeletonError {
         radius: f64,
     },
     /// A radius of an edge is zero, negative, infinite or NaN.
-    #[error("edge {} has the radius {radius}: radii must be finite and above zero", edge.0)]
+    #[error("edge {} has the radius {radius}: radii must be finite and positive", edge.0)]
     BadEdgeRadius {
         /// The edge.
         edge: EdgeId,
@@ -51,7 +52,7 @@ pub enum SkeletonError {
         radius: f64,
     },
     /// An edge has no length: both its ends are one node, or lie at one point.
-    #[error("edge {} has no length", edge.0)]
+    #[error("edge {} has zero length", edge.0)]
     NoLength {
         /// The edge.
         edge: EdgeId,

@@ -33,7 +33,7 @@ pub struct NodeSizes {
 
 /// A value that is not usable as a factor.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("node {} has the value {value}: a finite number above zero is needed", node.0)]
+#[error("node {} has the value {value}: give a finite number above zero", node.0)]
 pub struct BadSize {
     /// The node, in the order of the file.
     pub node: NodeId,

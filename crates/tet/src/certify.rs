@@ -41,7 +41,7 @@ pub enum CertifyError {
         face: [u32; 3],
     },
     /// A boundary face that the surface does not have, or has with the other orientation.
-    #[error("boundary face {face:?} is no triangle of the surface")]
+    #[error("boundary face {face:?} is not a triangle of the surface")]
     ForeignFace {
         /// Vertices of the face.
         face: [u32; 3],
@@ -53,13 +53,13 @@ pub enum CertifyError {
         triangle: u32,
     },
     /// A triangle of the complex that is no face of the mesh.
-    #[error("triangle {triangle} of the input is no face of the mesh")]
+    #[error("triangle {triangle} of the input is not a face of the mesh")]
     FacetLost {
         /// The triangle.
         triangle: u32,
     },
     /// A segment of the complex that is no edge of the mesh.
-    #[error("segment {segment} of the input is no edge of the mesh")]
+    #[error("segment {segment} of the input is not an edge of the mesh")]
     SegmentLost {
         /// The segment.
         segment: u32,
@@ -73,7 +73,7 @@ pub enum CertifyError {
         id: u32,
     },
     /// Two regions that meet in a face which is no triangle of the complex.
-    #[error("face {face:?} lies between two regions and is no triangle of the input")]
+    #[error("face {face:?} lies between two regions and is not a triangle of the input")]
     RegionsMix {
         /// Vertices of the face.
         face: [u32; 3],

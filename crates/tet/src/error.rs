@@ -5,6 +5,7 @@ use super::layer::LayersError;
 use super::plc::InputPart;
 use anastomesh_mesh::Bound;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 
 /// A part of the surface that another part meets; ids are those of the surface's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,13 +53,13 @@ fn list_as<T: PartialEq>(ids: &[T], count: usize, shown: impl Fn(&T) -> String) 
     named.join(", ") + &more
 }
 
-/// Which triangles are there twice.
+/// Text on duplicate triangles.
 fn twice(pairs: &[[u32; 2]], count: usize) -> String {
     match pairs {
-        [[first, again]] if count == 1 => format!("triangle {first} is there twice (also as {again})"),
+        [[first, again]] if count == 1 => format!("triangle {first} is duplicated by {again}"),
         _ => {
-            let named = list_as(pairs, count, |[first, again]| format!("{first} (also as {again})"));
-            format!("{count} triangles are there twice: {named}")
+            let named = list_as(pairs, count, |[first, again]| format!("{first} (again as {again})"));
+            format!("{count} duplicate triangles: {named}")
         }
     }
 }
@@ -115,9 +116,9 @@ pub enum LayersConflict {
 impl std::fmt::Display for LayersConflict {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(match self {
-            Self::SplitBoundary => "they may not be split",
-            Self::Facets => "this is a complex of facets",
-            Self::Segments => "there are segments besides",
+            Self::SplitBoundary => "the boundary may be split",
+            Self::Facets => "the input is a complex of facets",
+            Self::Segments => "the input has segments",
         })
     }
 }
@@ -126,7 +127,7 @@ impl std::fmt::Display for LayersConflict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stuck {
-    /// The surface meets itself there.
+    /// The surface intersects itself there.
     Intersection,
     /// No place for a vertex was found off the parts of the surface that meet there; that proves nothing.
     Precision,
@@ -141,13 +142,13 @@ pub enum Stuck {
 impl std::fmt::Display for Stuck {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Intersection => "the surface meets itself there",
-            Self::Precision => {
-                "no room for a vertex was found between the parts that meet there, in any of the ways that there are"
+            Self::Intersection => "the surface intersects itself there",
+            Self::Precision => "no position for a Steiner point was found between the parts that meet there",
+            Self::Dangling => {
+                "it has fewer than two triangles, and no position for a Steiner point was found beside it"
             }
-            Self::Dangling => "it has fewer than two triangles and no room was found beside it",
-            Self::Budget => "the budget of work was used up",
-            Self::Layer => "layers along it would turn over, and its corners may be nowhere else further in",
+            Self::Budget => "the work budget was used up",
+            Self::Layer => "layers along it would invert",
         })
     }
 }
@@ -166,15 +167,15 @@ pub enum TetError {
         triangles: usize,
     },
     /// More points than `u32` ids can carry.
-    #[error("{points} points are more than the tetrahedralizer can number")]
+    #[error("{points} points exceed the limit of 32-bit indices")]
     TooLarge {
         /// Number of points.
         points: usize,
     },
     /// Coordinates that are not finite, or too large or too close to zero for exact arithmetic.
     #[error(
-        "{count} points have coordinates that are not finite or out of the range of exact arithmetic: {}; \
-         the first is at {position}", list(points, *count)
+        "{} with coordinates that are not finite or exceed the range of exact arithmetic: {}; \
+         the first is at {position}", counted(*count, "point"), list(points, *count)
     )]
     OutOfRange {
         /// The points.
@@ -185,7 +186,7 @@ pub enum TetError {
         position: Point3,
     },
     /// Points at the same place.
-    #[error("{count} points repeat an earlier one: {}; the first two are at {position}", list(pairs, *count))]
+    #[error("{}: {}; the first pair is at {position}", counted(*count, "duplicate point"), list(pairs, *count))]
     DuplicatePoints {
         /// A point, and one before it at the same place; the earlier first.
         pairs: Vec<[u32; 2]>,
@@ -199,8 +200,8 @@ pub enum TetError {
     Flat,
     /// Triangles with an index out of range or a repeated vertex.
     #[error(
-        "{count} triangles have vertices out of range or not distinct: {}; the first has {vertices:?}",
-        list(triangles, *count)
+        "{} with vertices out of range or not distinct: {}; the first has {vertices:?}",
+        counted(*count, "triangle"), list(triangles, *count)
     )]
     BadTriangle {
         /// The triangles.
@@ -211,7 +212,7 @@ pub enum TetError {
         vertices: [u32; 3],
     },
     /// Segments with an index out of range or equal ends.
-    #[error("{count} segments have ends out of range or not distinct: {}", list(segments, *count))]
+    #[error("{} with ends out of range or not distinct: {}", counted(*count, "segment"), list(segments, *count))]
     BadSegment {
         /// The segments, as indices into [`super::Plc::segments`].
         segments: Vec<u32>,
@@ -220,8 +221,8 @@ pub enum TetError {
     },
     /// Triangles whose vertices lie on one line.
     #[error(
-        "{count} triangles have no area: {}; the first has the vertices {vertices:?}, which lie on one line",
-        list(triangles, *count)
+        "{} without area: {}; the first has the collinear vertices {vertices:?}",
+        counted(*count, "triangle"), list(triangles, *count)
     )]
     FlatTriangle {
         /// The triangles.
@@ -240,7 +241,7 @@ pub enum TetError {
         count: usize,
     },
     /// An array that has to have a value for each of something else has not.
-    #[error("{found} {array} were given, {expected} are needed")]
+    #[error("{found} {array} given, expected {expected}")]
     WrongLength {
         /// The array.
         array: InputArray,
@@ -250,7 +251,7 @@ pub enum TetError {
         expected: usize,
     },
     /// Edges that only one triangle has.
-    #[error("the surface is open: {count} triangles have an edge of their own: {}; one is {edge:?}", list(triangles, *count))]
+    #[error("the surface is open: {} with an unshared edge: {}; one edge is {edge:?}", counted(*count, "triangle"), list(triangles, *count))]
     Open {
         /// Triangles with such an edge.
         triangles: Vec<u32>,
@@ -261,11 +262,10 @@ pub enum TetError {
         /// Number of such edges.
         edges: usize,
     },
-    /// Edges that only one triangle has each, at the place of one another: each triangle, or each part of the surface,
-    /// has corners of its own.
+    /// Coincident edges of different triangles whose vertices are not merged.
     #[error(
-        "corners are not shared: {count} triangles have an edge at the place of another's: {}; one is {edge:?}",
-        list(triangles, *count)
+        "vertices are not merged: {} with an edge that coincides with another: {}; one edge is {edge:?}",
+        counted(*count, "triangle"), list(triangles, *count)
     )]
     NotShared {
         /// Triangles with such an edge.
@@ -279,8 +279,8 @@ pub enum TetError {
     },
     /// Edges that more than two triangles share.
     #[error(
-        "the surface is not manifold: {count} triangles have an edge with two or more others: {}; one is {edge:?}",
-        list(triangles, *count)
+        "the surface is not manifold: {} at edges with more than two triangles: {}; one edge is {edge:?}",
+        counted(*count, "triangle"), list(triangles, *count)
     )]
     NotManifold {
         /// Triangles with such an edge.
@@ -294,8 +294,7 @@ pub enum TetError {
     },
     /// Two triangles run through an edge in the same direction.
     #[error(
-        "the surface is not consistently oriented: {count} triangles are turned otherwise than a neighbour: {}; \
-         one such edge is {edge:?}", list(triangles, *count)
+        "the surface is not consistently oriented: {} with a neighbour of opposite orientation: {}; one edge is {edge:?}", counted(*count, "triangle"), list(triangles, *count)
     )]
     NotOriented {
         /// Triangles with such an edge.
@@ -323,7 +322,7 @@ pub enum TetError {
         position: Point3,
     },
     /// The seed of a hole or region that lies in no such part of space.
-    #[error("the seed {index} of the {seed}s at {position} lies in none")]
+    #[error("the {seed} seed {index} at {position} lies in no {seed}")]
     BadSeed {
         /// The kind of seed.
         seed: SeedKind,
@@ -339,7 +338,7 @@ pub enum TetError {
         value: f64,
     },
     /// A bound of [`Refinement`](crate::Refinement) that no mesh satisfies.
-    #[error("no mesh satisfies the bound {bound} = {value}")]
+    #[error("the bound {bound} = {value} cannot be satisfied")]
     BadBound {
         /// The bound.
         bound: Bound,
@@ -350,31 +349,31 @@ pub enum TetError {
     #[error(transparent)]
     Layers(#[from] LayersError),
     /// Layers are put along closed surfaces that stay as they are, and nothing else.
-    #[error("layers are made along closed surfaces whose triangles stay as they are: {0}")]
+    #[error("layers need a closed surface with a fixed boundary: {0}")]
     LayersAlong(LayersConflict),
-    /// The surface meets itself: pairs of triangles have more in common than the vertices that they share.
+    /// The surface intersects itself: pairs of triangles intersect outside shared vertices and edges.
     #[error(
-        "the surface meets itself: {}{count} pairs of triangles intersect: {}",
-        if *complete { "" } else { "at least " }, list(pairs, *count)
+        "the surface intersects itself: {}{}: {}",
+        if *complete { "" } else { "at least " }, counted(*count, "intersecting triangle pair"), list(pairs, *count)
     )]
     SelfIntersection {
         /// The triangles of each pair.
         pairs: Vec<[u32; 2]>,
         /// Number of pairs.
         count: usize,
-        /// Whether all pairs were counted; where there are very many, counting ends.
+        /// True if all pairs were counted; counting stops at a limit.
         complete: bool,
     },
     /// An edge runs through a triangle, another edge, or a point.
-    #[error("edge {} {} runs through {obstacle}", edge[0], edge[1])]
+    #[error("edge {} {} intersects {obstacle}", edge[0], edge[1])]
     EdgeMeets {
         /// Ends of the edge.
         edge: [u32; 2],
         /// What it meets.
         obstacle: Obstacle,
     },
-    /// Recovery ended before all of the surface was in the mesh, although the surface does not meet itself.
-    #[error("{} edges and {} triangles of the surface could not be recovered", edges.len(), triangles.len())]
+    /// Recovery ended before all of the surface was in the mesh, although the surface does not intersect itself.
+    #[error("{} and {} of the surface could not be recovered", counted(edges.len(), "edge"), counted(triangles.len(), "triangle"))]
     NotRecovered {
         /// Edges that are not in the mesh.
         edges: Vec<[u32; 2]>,
@@ -399,7 +398,7 @@ pub enum TetError {
     #[error("the facets enclose no volume")]
     NothingEnclosed,
     /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
-    #[error("{count} {part} lie outside of what is filled: {}", list(ids, *count))]
+    #[error("{count} {part} lie outside the filled region: {}", list(ids, *count))]
     Outside {
         /// Triangles or segments.
         part: InputPart,
@@ -408,13 +407,13 @@ pub enum TetError {
         /// Number of them.
         count: usize,
     },
-    /// The caller's callback said so.
+    /// The progress callback cancelled the run.
     #[error("cancelled")]
     Cancelled,
-    /// The finished mesh did not pass the certificate. A bug of this program, or a surface that meets itself.
-    #[error("the mesh did not pass the certificate")]
+    /// The finished mesh did not pass the certificate. A bug of this program, or a surface that intersects itself.
+    #[error("the mesh failed its certificate")]
     NotCertified(#[from] super::certify::CertifyError),
     /// The complex broke. A bug of this program.
-    #[error("the tetrahedral complex is broken")]
+    #[error("the tetrahedral complex is inconsistent")]
     Broken(#[from] ComplexError),
 }

@@ -19,9 +19,9 @@ fn triangles_that_are_there_twice_are_named_in_pairs() {
         assert_eq!((pairs, count), (vec![[2, n + 1], [5, n], [5, n + 2]], 3));
     }
     let said = error(&s, InputKind::Closed).to_string();
-    assert_eq!(said, "3 triangles are there twice: 2 (also as 81), 5 (also as 80), 5 (also as 82)");
+    assert_eq!(said, "3 duplicate triangles: 2 (again as 81), 5 (again as 80), 5 (again as 82)");
     s.triangles.truncate(n as usize + 1);
-    assert_eq!(error(&s, InputKind::Plc).to_string(), "triangle 5 is there twice (also as 80)");
+    assert_eq!(error(&s, InputKind::Plc).to_string(), "triangle 5 is duplicated by 80");
 }
 
 /// The surface with separate corners for each triangle.
@@ -74,5 +74,5 @@ fn errors_are_told_in_the_numbers_of_the_caller() {
     let renamed = error(&s, InputKind::Closed).renamed(&Halves);
     let TetError::Open { triangles, edge: elsewhere, count: 3, .. } = &renamed else { panic!("{renamed}") };
     assert_eq!((triangles.as_slice(), *elsewhere), (&[10, 10, 11][..], edge.map(|v| v + 10)));
-    assert!(renamed.to_string().contains("3 triangles have an edge of their own: 10, 11; one is"), "{renamed}");
+    assert!(renamed.to_string().contains("3 triangles with an unshared edge: 10, 11; one edge is"), "{renamed}");
 }

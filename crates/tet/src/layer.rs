@@ -27,21 +27,21 @@ anastomesh_mesh::setters!(Layers { count: u32, growth: f64, thickness: f64 });
 #[non_exhaustive]
 pub enum LayersError {
     /// Too few or too many.
-    #[error("{0} layers: give 1 to {most}", most = Layers::MOST)]
+    #[error("invalid number of layers {0}: give 1 to {most}", most = Layers::MOST)]
     Count(u32),
     /// A growth outside of what makes sense.
-    #[error("a growth of {0} from layer to layer: give {least} to {most}", least = Layers::GROWTH[0], most = Layers::GROWTH[1])]
+    #[error("layer growth {0} is out of range: give {least} to {most}", least = Layers::GROWTH[0], most = Layers::GROWTH[1])]
     Growth(f64),
     /// All layers together are thicker than what they are in, or have no thickness.
     #[error(
-        "layers of {0} of the radius together: give {least} to {most}, so that there is room inside",
+        "total layer thickness {0} (fraction of the radius) is out of range: give {least} to {most}",
         least = Layers::THICKNESS[0], most = Layers::THICKNESS[1]
     )]
     Thickness(f64),
     /// The thinnest of them is too thin.
     #[error(
-        "the thinnest of {count} layers would be {thinnest:.1e} of the radius; there is room for {} and more: fewer layers, \
-         a growth nearer to 1, or thicker ones",
+        "the thinnest of {count} layers would have {thinnest:.1e} of the radius, at least {} is required: give fewer or thicker layers, \
+         or a growth closer to 1",
         Layers::THINNEST
     )]
     Thin {

@@ -1,4 +1,4 @@
-//! Errors of the tetrahedralizer for people: what, where, why, and what to do.
+//! Messages of tetrahedralizer errors, with positions and remedies.
 
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::stop::NOTHING_KEPT;
 use anastomesh_tet::{InputPart, TetError, parts::Names};
 
-/// The message and exit code for an error; `from` names the input.
+/// Message and exit code of an error; `from` names the input.
 pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
     if *error == TetError::Cancelled {
         return Failure::stopped(NOTHING_KEPT);
@@ -24,7 +24,7 @@ pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
     Failure { exit: exit(error), message }
 }
 
-/// The numbers of the file, and which of them a message has.
+/// Numbers of the file, with a record of those that a message uses.
 struct Asked<'a> {
     numbers: &'a FileNumbers,
     triangles: Cell<bool>,
@@ -47,7 +47,7 @@ impl Names for Asked<'_> {
     }
 }
 
-/// Where the edge is that a message ends with, or which segments it means.
+/// Position of the edge at the end of a message, or ends of the segments it names.
 fn place(error: &TetError, input: &Input) -> String {
     match error {
         TetError::Open { edge, .. }
@@ -66,7 +66,7 @@ fn place(error: &TetError, input: &Input) -> String {
     }
 }
 
-/// Whose fault it is.
+/// Exit code of an error.
 fn exit(error: &TetError) -> Exit {
     match error {
         TetError::BadSize { .. } | TetError::BadBound { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
@@ -79,39 +79,31 @@ fn exit(error: &TetError) -> Exit {
     }
 }
 
-/// What to do.
+/// Remedy of an error.
 fn remedy(error: &TetError) -> Option<&'static str> {
     Some(match error {
-        TetError::Empty { .. } | TetError::Flat => "a volume needs at least four points that do not lie in one plane",
-        TetError::OutOfRange { .. } => "scale or shift the input so that its coordinates are of ordinary size",
-        TetError::DuplicatePoints { .. } => {
-            "join them, or give --repair, which joins points that are equal bit for bit"
-        }
+        TetError::Empty { .. } | TetError::Flat => "give at least four points that are not coplanar",
+        TetError::OutOfRange { .. } => "scale or shift the input",
+        TetError::DuplicatePoints { .. } => "merge them, or give --repair",
         TetError::BadTriangle { .. } => "remove them, or give --repair",
-        TetError::DuplicateTriangles { .. } => "--repair mends that",
-        TetError::NotShared { .. } => "--repair joins those at the same place",
-        TetError::FlatTriangle { .. } => {
-            "remove them (collapse an edge, or swap the longest one) in the program that made the surface"
-        }
-        TetError::Open { .. } => "close the holes there, or give --plc if the facets are only to be kept",
-        TetError::NotManifold { .. } => "separate the sheets there, or give --plc if facets may lie inside",
-        TetError::NotOriented { .. } | TetError::InsideOut { .. } => {
-            "turn the triangles over, or give --repair, which does"
-        }
+        TetError::DuplicateTriangles { .. } => "remove them, or give --repair",
+        TetError::NotShared { .. } => "merge them, or give --repair",
+        TetError::FlatTriangle { .. } => "remove them in the program that wrote the surface",
+        TetError::Open { .. } => "close the holes, or give --plc to keep open facets",
+        TetError::NotManifold { .. } => "separate the sheets, or give --plc to allow interior facets",
+        TetError::NotOriented { .. } | TetError::InsideOut { .. } => "orient the triangles, or give --repair",
         TetError::SelfIntersection { .. } | TetError::EdgeMeets { .. } => {
-            "separate or unite the parts that meet in the program that made the surface"
+            "separate or unite the intersecting parts in the program that wrote the surface"
         }
-        TetError::BadSeed { .. } => "move it into the part of space that it stands for",
-        TetError::NothingEnclosed => "close the outer surface, or remove the hole that empties it",
-        TetError::Outside { .. } => {
-            "remove them, or the hole that they lie in, or leave --strict out: then the mesh goes without them"
-        }
-        TetError::NotSeparating { .. } => "give --repair, which orients shells",
+        TetError::BadSeed { .. } => "move it into its region",
+        TetError::NothingEnclosed => "close the outer surface, or remove the hole",
+        TetError::Outside { .. } => "remove them or their hole, or omit --strict to ignore them",
+        TetError::NotSeparating { .. } => "orient the shells, or give --repair",
         TetError::NotRecovered { .. } => {
-            "the surface is valid as far as was checked: give --split if it may be split, and please report it"
+            "the surface passed all checks: give --split to allow splitting, and please report it"
         }
         TetError::NotCertified(_) | TetError::Broken(_) => {
-            "this is a fault of the program: please report it with the input and the options"
+            "internal error: please report it with the input and the options"
         }
         _ => return None,
     })

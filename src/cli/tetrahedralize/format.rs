@@ -1,13 +1,14 @@
-//! Formats by extension or by name, and where the mesh goes.
+//! Formats by extension or by name, and output targets.
 
 use std::path::{Path, PathBuf};
 
 use crate::cli::exit::Failure;
+use crate::cli::hint;
 use anastomesh_io::surface::SurfaceFormat;
 use anastomesh_io::tetgen::{MeshFamily, PlcFormat};
 use anastomesh_io::volume::{MeshFormat, ensure_writable};
 
-/// A format that can be read.
+/// Input format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum InputFormat {
     /// Geomview OFF
@@ -18,17 +19,17 @@ pub enum InputFormat {
     Stl,
     /// Wavefront OBJ
     Obj,
-    /// `TetGen`'s points
+    /// `TetGen` points
     Node,
-    /// `TetGen`'s complexes of facets
+    /// `TetGen` facet complex
     Poly,
-    /// `TetGen`'s complexes of simple facets
+    /// `TetGen` complex of simple facets
     Smesh,
-    /// Arrays of `NumPy`, a folder
+    /// Folder of `NumPy` arrays
     Npyd,
 }
 
-/// A format that can be written to a stream.
+/// Format of standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum StreamFormat {
     /// VTK unstructured grid
@@ -42,31 +43,32 @@ pub enum StreamFormat {
 }
 
 impl InputFormat {
-    /// The format that was named, or that of the extension.
+    /// Returns the named format, or that of the extension.
     pub fn of(path: &Path, named: Option<Self>) -> Result<Self, Failure> {
         if let Some(format) = named {
             return Ok(format);
         }
         if is_stream(path) {
-            return Err(Failure::usage("standard input has no extension: name its format with --from"));
+            return Err(Failure::usage("standard input has no extension: give its format with --from"));
         }
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         match <Self as clap::ValueEnum>::from_str(&extension, true) {
             Ok(format) => Ok(format),
             Err(_) => Err(Failure::input(format!(
-                "{}: the extension names no format that is read here \
-                 (known: .off, .ply, .stl, .obj, .node, .poly, .smesh, .npyd); name the format with --from",
-                path.display()
+                "{}: unrecognised surface extension; known: .off, .ply, .stl, .obj, .node, .poly, .smesh, .npyd; give the format \
+                 with --from{}",
+                path.display(),
+                hint::instead_of_surface(path)
             ))),
         }
     }
 
-    /// Whether such a file holds a complex of facets by its nature.
+    /// True if the format is a facet complex.
     pub fn is_complex(self) -> bool {
         matches!(self, Self::Poly | Self::Smesh)
     }
 
-    /// As a format of surfaces.
+    /// Surface format, if any.
     pub fn surface(self) -> Option<SurfaceFormat> {
         match self {
             Self::Off => Some(SurfaceFormat::Off),
@@ -77,7 +79,7 @@ impl InputFormat {
         }
     }
 
-    /// As a format of complexes.
+    /// Facet complex format, if any.
     pub fn complex(self) -> Option<PlcFormat> {
         match self {
             Self::Poly => Some(PlcFormat::Poly),
@@ -87,24 +89,24 @@ impl InputFormat {
     }
 }
 
-/// Whether a path stands for a standard stream.
+/// True if a path denotes a standard stream.
 pub fn is_stream(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Where the mesh goes.
+/// Output target.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// To a file.
+    /// One file.
     File(PathBuf),
-    /// To `TetGen`'s family of files.
+    /// `TetGen` files.
     Family(PathBuf),
-    /// To standard output.
+    /// Standard output.
     Stream(MeshFormat),
 }
 
 impl Target {
-    /// The target that was typed, where something can be written.
+    /// Returns the requested target, after checking that it can be written.
     pub fn of(path: &Path, named: Option<StreamFormat>) -> Result<Self, Failure> {
         if is_stream(path) {
             return match named {
@@ -112,7 +114,7 @@ impl Target {
                 Some(StreamFormat::Msh) => Ok(Self::Stream(MeshFormat::Msh)),
                 Some(StreamFormat::Msh2) => Ok(Self::Stream(MeshFormat::Msh2)),
                 Some(StreamFormat::Mesh) => Ok(Self::Stream(MeshFormat::Medit)),
-                None => Err(Failure::usage("standard output has no extension: name its format with --to")),
+                None => Err(Failure::usage("standard output has no extension: give its format with --to")),
             };
         }
         let failed = |e: anastomesh_io::volume::MeshFileError| Failure::input(e.to_string());
@@ -124,13 +126,13 @@ impl Target {
         Ok(Self::Family(path.to_path_buf()))
     }
 
-    /// Makes sure that none of the files of the input is replaced.
+    /// Checks that no input file is overwritten.
     pub fn ensure_apart(&self, input: &[PathBuf]) -> Result<(), Failure> {
         let base = match self {
             Self::Family(base) => base,
             Self::File(path) if input.contains(path) => {
                 return Err(Failure::usage(format!(
-                    "{} is the input and would be replaced: name another output",
+                    "{} is the input and would be overwritten: give another output",
                     path.display()
                 )));
             }
@@ -138,7 +140,7 @@ impl Target {
         };
         match MeshFamily::paths(base).iter().find(|written| input.contains(written)) {
             Some(written) => Err(Failure::usage(format!(
-                "{} belongs to the input and would be replaced: name another output, such as {}",
+                "{} belongs to the input and would be overwritten: give another output, such as {}",
                 written.display(),
                 base.with_extension("1.ele").display()
             ))),

@@ -1,4 +1,4 @@
-//! The input: read, facets cut into triangles, repaired where asked for.
+//! Reading of the input, triangulation of facets, and repair.
 
 use anastomesh_mesh::geometry::place_key;
 use std::io::Read;
@@ -14,33 +14,34 @@ use anastomesh_io::surface::{
 use anastomesh_io::tetgen::{self, Nodes};
 use anastomesh_mesh::facets::{self, FacetTriangles};
 use anastomesh_mesh::repair::{RepairReport, Repaired, repair, repair_facets};
+use anastomesh_mesh::units::counted;
 use anastomesh_tet::{Plc, Region};
 use rustc_hash::FxHashMap;
 
-/// What was read.
+/// Input of a tetrahedralization.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
-    /// The files that were read.
+    /// Input files.
     pub files: Vec<PathBuf>,
-    /// Points, triangles and the like; points alone when there are neither triangles nor segments.
+    /// Points, triangles, segments, holes and regions.
     pub plc: Plc,
-    /// Whether the input is a list of points without facets.
+    /// True if the input has only points.
     pub only_points: bool,
-    /// Whether the file gives markers to facets.
+    /// True if the file has facet markers.
     pub marked: bool,
-    /// How many facets the file has; none where it has triangles.
+    /// Number of facets; `None` for triangles.
     pub facets: Option<usize>,
-    /// How the file numbers triangles and points.
+    /// Numbers of triangles and points in the file.
     pub numbers: FileNumbers,
-    /// What a person should know about the file.
+    /// Notes on the file.
     pub notes: Vec<String>,
-    /// Number of the first item in the files that are written, where nothing else is asked for.
+    /// Default number of the first item in output files.
     pub first: u32,
     /// Marker of each point; may be empty.
     pub point_markers: Vec<i32>,
     /// Attributes of all points.
     pub point_attributes: Vec<f64>,
-    /// How many attributes a point has.
+    /// Number of attributes per point.
     pub attribute_count: usize,
 }
 
@@ -63,7 +64,7 @@ impl Input {
         };
         match input.notes.first() {
             Some(note) if plan.strict => {
-                Err(Failure::input(format!("{from}: {note}; correct the file, or leave --strict out")))
+                Err(Failure::input(format!("{from}: {note}; correct the file, or omit --strict")))
             }
             _ => Ok(Self { files, ..input }),
         }
@@ -76,7 +77,7 @@ impl Input {
         Self { plc: mesh.into(), numbers, notes: notes.iter().map(ToString::to_string).collect(), ..Self::default() }
     }
 
-    /// Orients the triangles and joins what is there twice; says what it did.
+    /// Orients the triangles and merges duplicates. Returns the changes as sentences.
     pub fn repair(&mut self, is_complex: bool) -> Vec<String> {
         let plc = &mut self.plc;
         let repair = if is_complex { repair_facets } else { repair };
@@ -87,7 +88,7 @@ impl Input {
         plc.segments.retain(|[a, b]| a != b);
         plc.segments.sort_unstable();
         plc.segments.dedup();
-        // The first of equal points speaks for all of them.
+        // The first of equal points is kept.
         let mut kept = vec![u32::MAX; surface.points.len()];
         for (old, &new) in point.iter().enumerate().rev() {
             if let Some(slot) = kept.get_mut(new as usize) {
@@ -104,7 +105,7 @@ impl Input {
         said(&report)
     }
 
-    /// Forgets segments that the mesh does not have; `ids` are ascending.
+    /// Removes segments that the mesh does not have; `ids` are ascending.
     pub fn leave_out(&mut self, ids: &[u32]) {
         let mut ids = ids.iter().peekable();
         let mut i = 0;
@@ -130,13 +131,13 @@ impl Input {
 
     fn of_stream(format: InputFormat) -> Result<Source, Failure> {
         if format == InputFormat::Npyd {
-            return Err(Failure::usage("arrays are a folder, which standard input cannot be: name its path"));
+            return Err(Failure::usage("standard input cannot be a folder of arrays: give its path"));
         }
         let mut bytes = Vec::new();
         let failed = |e: &dyn std::fmt::Display| Failure::input(format!("standard input: {e}"));
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| failed(&e))?;
         if bytes.trim_ascii().is_empty() {
-            return Err(failed(&"there is nothing in it"));
+            return Err(failed(&"empty"));
         }
         if let Some(surface) = format.surface() {
             return Ok(Source::Surface(read_content_from(&bytes, surface).map_err(|e| failed(&e))?));
@@ -217,7 +218,7 @@ impl Input {
     }
 }
 
-/// What a file holds.
+/// Contents of a file.
 enum Source {
     Surface(SurfaceContent),
     Points(Nodes),
@@ -225,14 +226,12 @@ enum Source {
     Complex(tetgen::Plc),
 }
 
-/// Why a complex of facets cannot be used. Facets and points count as in the file, regions from 0.
+/// Reason why a facet complex is invalid. Facets and points are numbered as in the file, regions from 0.
 #[derive(Debug, thiserror::Error)]
 enum ComplexError {
-    #[error("facet {facet} (facets and points count from {first}) cannot be cut into triangles: {fault}")]
+    #[error("facet {facet} (facets and points count from {first}) cannot be triangulated: {fault}")]
     Facet { facet: usize, first: u32, fault: facets::FacetError },
-    #[error(
-        "region {region} (counted from 0) has the attribute {attribute}; regions are labelled by integers: change it"
-    )]
+    #[error("region {region} (from 0) has the attribute {attribute}: give an integer")]
     Attribute { region: usize, attribute: f64 },
 }
 
@@ -248,7 +247,7 @@ fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> Result<Vec<Region>, Com
     Ok(regions)
 }
 
-/// Lets the polygons name the first of points at the same place.
+/// Replaces duplicate points in polygons by the first of them.
 fn name_first_of_duplicates(file: &mut tetgen::Plc) {
     let mut known = FxHashMap::default();
     let first: Vec<u32> = file.points.iter().zip(0..).map(|(p, i)| *known.entry(place_key(p)).or_insert(i)).collect();
@@ -257,16 +256,17 @@ fn name_first_of_duplicates(file: &mut tetgen::Plc) {
     }
 }
 
-/// What a repair did, a sentence for each kind of change.
+/// Changes of a repair, one sentence per kind.
 fn said(report: &RepairReport) -> Vec<String> {
     let counts = [
-        (report.merged_points, "points joined with an earlier one at the same place"),
-        (report.collapsed_triangles, "triangles removed that had a corner twice"),
-        (report.duplicate_triangles, "triangles removed that were there before"),
-        (report.sheet_triangles, "triangles removed that lay back to back with another and enclosed nothing"),
-        (report.flat_triangles, "triangles without area merged into a neighbour"),
-        (report.turned_triangles, "triangles turned over"),
-        (report.not_orientable, "parts cannot be oriented"),
+        (report.merged_points, "duplicate point", "merged"),
+        (report.collapsed_triangles, "degenerate triangle", "removed"),
+        (report.duplicate_triangles, "duplicate triangle", "removed"),
+        (report.sheet_triangles, "back-to-back triangle", "removed"),
+        (report.flat_triangles, "triangle", "without area merged into a neighbour"),
+        (report.turned_triangles, "triangle", "reoriented"),
+        (report.not_orientable, "part", "not orientable"),
     ];
-    counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
+    let found = counts.iter().filter(|(count, ..)| *count > 0);
+    found.map(|&(count, what, change)| format!("{} {change}", counted(count, what))).collect()
 }

@@ -1,4 +1,4 @@
-//! `anastomesh tetrahedralize`: from a surface, a complex of facets or points to a tetrahedral mesh.
+//! `anastomesh tetrahedralize`: tetrahedral mesh of a surface, a facet complex or points.
 
 mod args;
 mod fault;
@@ -27,7 +27,7 @@ use crate::report::tetrahedralize::{
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::counted;
 use anastomesh_tet::parts::Names;
 use anastomesh_tet::{Boundary, LeftOut as LeftOutIds, TetError, Tetrahedralization};
 pub use args::Args;
@@ -36,7 +36,7 @@ use input::Input;
 use plan::TetPlan;
 use watch::{Listener, Watch};
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if report.bounds_met() { Exit::Fine } else { Exit::GateNotMet })
 }
 
-/// The mesh; none when the input is only checked.
+/// Makes the mesh; `None` if the input is only checked.
 fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetrahedralization>, TetError> {
     let tetrahedralizer = plan.tetrahedralizer(&input.plc.regions).progress(listener);
     if plan.check_only && !input.only_points {
@@ -109,15 +109,15 @@ fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetr
     Ok(Some(made).filter(|_| !plan.check_only))
 }
 
-/// Writes the page of `--report`.
+/// Writes the HTML report.
 fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh) -> Result<(), Failure> {
     let verdict = if report.bounds_met() {
-        (Mark::Good, "every triangle of the input is a face of the mesh, or a union of faces".into())
+        (Mark::Good, "all input triangles are faces or unions of faces".into())
     } else {
-        (Mark::Bad, "a bound is not met".into())
+        (Mark::Bad, "a bound is violated".into())
     };
     args.report.write(&args.input, Some(verdict), plan, |page| {
-        page.add(Section::new("Summary").folded("As the terminal shows it", &report.text(true, &common::ended(&[]))));
+        page.add(Section::new("Summary").folded("Terminal output", &report.text(true, &common::ended(&[]))));
         page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
         if let Some(quality) = &report.quality {
             page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
@@ -172,7 +172,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
 }
 
-/// What the mesh does not have of the input, numbered as in the file.
+/// Input elements that the mesh does not have, numbered as in the file.
 fn left_out(made: &Tetrahedralization, input: &Input) -> LeftOut {
     let LeftOutIds { triangles, segments, .. } = &made.summary.left_out;
     let mut faces: Vec<u32> = triangles.iter().map(|&t| input.numbers.triangle(t)).collect();
@@ -205,13 +205,13 @@ fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure>
     if plan.check_only {
         if !plan.quiet {
             let InputSize { points, triangles, segments, .. } = report.input;
-            let [points, triangles, segments] = [points, triangles, segments].map(grouped);
-            let input = row("input", &format!("{points} points, {triangles} triangles, {segments} further segments"));
+            let counts = [(points, "point"), (triangles, "triangle"), (segments, "additional segment")];
+            let input = row("input", &counts.map(|(count, what)| counted(count, what)).join(", "));
             log::result(&format!("{input}{}no fault found", ended.rows(&report.stages)));
         }
         return Ok(());
     }
-    // A bound that is not met is an error, which --quiet does not silence.
+    // A violated bound is an error, which --quiet does not suppress.
     if !plan.quiet || !report.bounds_met() {
         log::result(&report.text(args.common.verbose, &ended));
     }

@@ -1,9 +1,9 @@
-//! How the file numbers what the tetrahedralizer names: triangles may be pieces of polygons, points may have been joined,
-//! and some formats count from 1.
+//! Numbers of triangles and points in the file. They differ from indices if polygons were triangulated, points were merged,
+//! or the format counts from 1.
 
 use anastomesh_tet::parts::Names;
 
-/// What a file numbers.
+/// Items with numbers in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Counted {
     /// Faces and points.
@@ -11,7 +11,7 @@ pub enum Counted {
     Faces,
     /// Facets and points.
     Facets,
-    /// Triangles, each with corners of its own: that of triangle `t` and place `k` has the number 3 `t` + `k`.
+    /// Triangles with unshared corners: corner `k` of triangle `t` has the number 3 `t` + `k`.
     Corners,
 }
 
@@ -21,22 +21,22 @@ pub struct FileNumbers {
     pub counted: Counted,
     /// Number of the first face and of the first point.
     pub first: u32,
-    /// The face that each triangle is a piece of, from 0; empty when it has the triangle's number.
+    /// Face of each triangle, from 0; empty if equal to the triangle.
     pub face_of: Vec<u32>,
-    /// What each point is in the file, from 0; empty when it has the same number.
+    /// Point of the file for each point, from 0; empty if equal.
     pub point_of: Vec<u32>,
-    /// Whether faces may have been cut into several triangles.
+    /// True if faces may have been cut into several triangles.
     pub cut: bool,
 }
 
 impl FileNumbers {
-    /// After a repair: triangles and points of the new input are these of the old one.
+    /// Renumbers after a repair: `triangles` and `points` are the old ids of the new ones.
     pub fn select(&mut self, triangles: &[u32], points: &[u32]) {
         self.face_of = triangles.iter().map(|&i| old(&self.face_of, i)).collect();
         self.point_of = points.iter().map(|&i| old(&self.point_of, i)).collect();
     }
 
-    /// What a triangle is called, in a sentence.
+    /// Noun for triangles in messages.
     pub fn triangles_of(&self) -> &'static str {
         match (self.counted, self.cut) {
             (Counted::Facets, _) => "triangles of the facets",
@@ -45,7 +45,7 @@ impl FileNumbers {
         }
     }
 
-    /// How triangles and points are numbered where a message names them.
+    /// Text on the numbering of triangles and points in a message.
     pub fn legend(&self, triangles: bool, points: bool) -> String {
         let faces = match (self.counted, self.cut) {
             (Counted::Facets, _) => Some("facets"),
@@ -85,7 +85,7 @@ impl Names for FileNumbers {
     }
 }
 
-/// The entry of a list that may be left out where it says nothing.
+/// Entry of a list that is empty if it maps every id to itself.
 fn old(list: &[u32], id: u32) -> u32 {
     list.get(id as usize).copied().unwrap_or(id)
 }

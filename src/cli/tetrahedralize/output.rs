@@ -1,4 +1,4 @@
-//! The mesh on its way to its file.
+//! Writing of the mesh.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -15,10 +15,10 @@ use anastomesh_mesh::{Patch, TET_FACES, VolumeMesh};
 use anastomesh_tet::Tetrahedralization;
 use rustc_hash::FxHashMap;
 
-/// The marker of all faces where the input has none.
+/// Marker of all faces of an unmarked input.
 const UNMARKED: i32 = 1;
 
-/// The mesh as the writers take it: regions are blocks, markers are patches.
+/// Mesh for the writers: regions are blocks, markers are patches.
 pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     let boundary = made.faces;
     let marked = input.marked && made.face_markers.len() == boundary.len();
@@ -43,7 +43,7 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     volume
 }
 
-/// The region under each face: that of the last tetrahedron with it.
+/// Sets the region of each face: that of its last tetrahedron.
 fn set_boundary_blocks(volume: &mut VolumeMesh) {
     let sorted = |mut face: [u32; 3]| {
         face.sort_unstable();
@@ -70,7 +70,7 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Failure> {
     let regions = volume.tet_block.iter().any(|&region| region != 0);
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
-    // What the bytes depend on, and nothing else: neither threads nor paths.
+    // Only options that affect the mesh: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
     let notes =
         MeshNotes { expectation: None, generator, options: format!("tetrahedralize {options}"), regions, flow: None };
@@ -90,7 +90,7 @@ pub fn write(
             let mut out = std::io::stdout().lock();
             let written = write_mesh_to(&mut out, *format, volume, &notes).and_then(|()| out.flush());
             match written {
-                // The reader's decision, not an error.
+                // A closed pipe is not an error.
                 Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
                     Err(Failure::input(format!("standard output: {e}")))
                 }

@@ -1,4 +1,4 @@
-//! What was typed, resolved: flags, or `TetGen`'s switches, become one plan.
+//! Resolved options: flags or `TetGen` switches as one plan.
 
 use super::args::Args;
 use super::format::{InputFormat, Target};
@@ -8,65 +8,64 @@ use anastomesh_mesh::{Bound, Bounds, REGULAR_DIHEDRAL};
 use anastomesh_tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
 
-/// Side of the lattice's cubes in edge lengths: what gives a body-centred lattice edges of about that length.
+/// Side of the lattice cubes in edge lengths, so that a body-centred lattice has edges of about that length.
 const LATTICE_CELL: f64 = 1.08;
 
-/// The lattice of a run that goes by TetGen's switches, in edge lengths of the surface nearby: about as many tetrahedra as
-/// TetGen makes.
+/// Lattice of a run with TetGen switches, in edge lengths of the nearby surface. It gives about as many tetrahedra as TetGen.
 const SPARSE: Interior = Interior::Local { cell: 2.0, clearance: 0.45 };
 
-/// What is to be done.
+/// Resolved options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TetPlan {
-    /// Whether the input is a complex of facets; otherwise a surface that bounds a volume. Points have neither.
+    /// True if the input is a facet complex, false for a closed surface.
     pub plc: bool,
-    /// Whether points are put inside to make tetrahedra of good shape.
+    /// True if interior points are added to improve the shape of tetrahedra.
     pub refine: bool,
     /// Bounds on the tetrahedra.
     #[serde(flatten)]
     pub bounds: Bounds,
-    /// Edge length wanted everywhere; none: as the surface has it nearby.
+    /// Uniform edge length; `None`: that of the nearby surface.
     pub size: Option<f64>,
-    /// Whether the triangles of the input may be split.
+    /// True if input triangles may be split.
     pub split: bool,
     /// Layers along the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Layers>,
-    /// Whether tetrahedra are improved.
+    /// True if tetrahedra are improved.
     pub optimize: bool,
-    /// Whether no more is put inside, and no more improved, than a bound on shapes asks for.
+    /// True if points and improvement are limited to what the shape bound needs.
     pub sparse: bool,
-    /// Whether the orientation is mended and exact duplicates are joined first.
+    /// True if the input is repaired: oriented, and exact duplicates merged.
     pub repair: bool,
-    /// Whether a part of the input that would be left out, or passed over, is an error.
+    /// True if ignored input is an error.
     pub strict: bool,
-    /// Whether regions are told apart.
+    /// True if regions are distinguished.
     pub regions: bool,
-    /// Whether the bounds on volume that regions have are kept.
+    /// True if volume bounds of regions apply.
     pub region_volumes: bool,
-    /// Whether the input is checked and nothing else done.
+    /// True if the input is only checked.
     pub check_only: bool,
-    /// Which files of the family are written.
+    /// Selected `TetGen` files.
     pub family: Family,
-    /// Whether nothing is printed but errors.
+    /// True if only errors are printed.
     #[serde(skip)]
     pub quiet: bool,
 }
 
-/// What of `TetGen`'s family of files is written.
+/// Selection of `TetGen` files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Family {
-    /// Number of the first item; none: as in the input.
+    /// Number of the first item; `None`: that of the input.
     pub first: Option<u32>,
     /// `.face`.
     pub faces: Wanted,
     /// `.edge`.
     pub edges: Wanted,
-    /// Whether `.neigh` is written.
+    /// True if `.neigh` is written.
     pub neighbors: bool,
 }
 
-/// Which faces or edges are written.
+/// Selection of faces or edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Wanted {
@@ -79,7 +78,7 @@ pub enum Wanted {
 }
 
 impl TetPlan {
-    /// Resolves the arguments; the notes are what a person should know about them.
+    /// Resolves the arguments. Returns the plan and notes on ignored switches.
     pub fn resolve(args: &Args, format: InputFormat) -> Result<(Self, Vec<String>), Failure> {
         let mut notes = Vec::new();
         let mut plan = match &args.tetgen {
@@ -134,7 +133,7 @@ impl TetPlan {
             split: !s.keep_boundary,
             layers: None,
             optimize: refine && !s.no_optimization,
-            // With a bound on volumes the lattice follows that; one on angles takes all there is to meet.
+            // A volume bound controls the lattice; an angle bound needs the full lattice and full effort.
             sparse: s.max_volume.is_none() && !s.region_volumes && !s.quality.is_some_and(bounds_angles),
             repair: false,
             strict: false,
@@ -150,7 +149,7 @@ impl TetPlan {
         let flag = |bound: Bound| format!("--{}", bound.to_string().replace('_', "-"));
         match bounds_of(args).senseless() {
             Some((bound @ Bound::MinDihedral, angle)) => Err(Failure::usage(format!(
-                "{} is {angle}; give degrees from 0 to below {REGULAR_DIHEDRAL:.2}, the angle of the regular tetrahedron",
+                "{} is {angle}: give degrees from 0 to below {REGULAR_DIHEDRAL:.2}, the angle of the regular tetrahedron",
                 flag(bound)
             ))),
             Some((bound, value)) => Err(not_positive(&flag(bound), value)),
@@ -161,7 +160,7 @@ impl TetPlan {
         }
     }
 
-    /// The tetrahedralizer that does it for an input with these regions.
+    /// Tetrahedralizer for an input with these regions.
     pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
         let refinement = Refinement::default().bounds(self.bounds);
         let lattice = if self.sparse {
@@ -183,28 +182,28 @@ impl TetPlan {
     }
 }
 
-/// The bounds among the flags.
+/// Bounds of the flags.
 fn bounds_of(args: &Args) -> Bounds {
     Bounds { max_radius_edge: args.max_radius_edge, min_dihedral: args.min_dihedral, max_volume: args.max_volume }
 }
 
-/// Whether there is a bound on dihedral angles that not all tetrahedra meet.
+/// True for a positive bound on dihedral angles.
 fn bounds_angles(bounds: Bounds) -> bool {
     bounds.min_dihedral.is_some_and(|degrees| degrees > 0.0)
 }
 
 fn not_positive(flag: &str, value: f64) -> Failure {
-    Failure::usage(format!("{flag} is {value}; give a finite number above 0"))
+    Failure::usage(format!("{flag} is {value}: give a finite number above 0"))
 }
 
-/// What belongs together between target and plan.
+/// Checks that target and plan are consistent.
 pub fn ensure_fits(plan: &TetPlan, args: &Args, target: Option<&Target>) -> Result<(), Failure> {
     match target {
-        None if !plan.check_only => Err(Failure::usage(
-            "there is no output: name one with -o MESH (.vtu, .pvtu, .msh, .mesh or .ele), or give --check-only",
-        )),
+        None if !plan.check_only => {
+            Err(Failure::usage("missing output: give -o MESH (.vtu, .pvtu, .msh, .mesh or .ele), or --check-only"))
+        }
         Some(Target::Stream(_)) if args.common.json && !plan.check_only => {
-            Err(Failure::usage("--json and -o - both write to standard output: name a file with -o"))
+            Err(Failure::usage("--json and -o - both write to standard output: give a file with -o"))
         }
         _ => Ok(()),
     }

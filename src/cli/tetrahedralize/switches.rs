@@ -1,8 +1,8 @@
-//! `TetGen`'s switches, as its manual describes them (version 1.5, section 4): a string such as `pYq1.4a0.1`.
+//! `TetGen` switches (manual of version 1.5, section 4): a string such as `pYq1.4a0.1`.
 
 use anastomesh_mesh::{Bounds, REGULAR_DIHEDRAL};
 
-/// What the switches ask for.
+/// Parsed switches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Switches {
     /// `p`: the input holds facets.
@@ -35,49 +35,47 @@ pub struct Switches {
     pub verbose: u8,
     /// `Q`: nothing is printed but errors.
     pub quiet: bool,
-    /// What is understood but does nothing here, with the reason.
+    /// Notes on switches without effect.
     pub without_effect: Vec<String>,
 }
 
-/// The bound of `q` without a number.
+/// Default bound of `q`.
 const USUAL_RATIO: f64 = 2.0;
 
-/// Why a string of switches is not followed.
+/// Errors of a switch string.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SwitchError {
-    /// There is nothing of the kind here.
+    /// The switch is not supported.
     #[error("switch {switch} of --tetgen: {what} is not supported; {instead}")]
     Unsupported {
         /// The switch, in quotes.
         switch: String,
-        /// What it asks for.
+        /// Requested feature.
         what: &'static str,
-        /// What to do.
+        /// Remedy.
         instead: &'static str,
     },
-    /// Neither `TetGen` nor this program knows it.
-    #[error(
-        "switch '{switch}' of --tetgen is unknown; known are p Y q a A d O z n f e F V Q, as in --tetgen pYq1.4a0.1"
-    )]
+    /// The switch is unknown.
+    #[error("unknown switch '{switch}' of --tetgen; known: p Y q a A d O z n f e F V Q, as in --tetgen pYq1.4a0.1")]
     Unknown {
         /// The letter.
         switch: char,
     },
-    /// Its number is none, or makes no sense.
-    #[error("switch '{switch}' of --tetgen has the number '{number}'; {expected}")]
+    /// The number of the switch is invalid.
+    #[error("invalid number '{number}' of switch '{switch}' of --tetgen; {expected}")]
     BadNumber {
         /// The letter.
         switch: char,
-        /// What follows it.
+        /// Text after the switch.
         number: String,
-        /// What has to follow it.
+        /// Expected text.
         expected: &'static str,
     },
 }
 
-/// What is not followed, why, and what to do.
+/// Unsupported switches, with feature and remedy.
 const UNSUPPORTED: [(char, &str, &str); 15] = [
-    ('r', "refining a mesh that exists", "give the surface of the mesh as input"),
+    ('r', "refinement of an existing mesh", "give the surface of the mesh as input"),
     ('R', "coarsening", "give a coarser surface as input"),
     ('m', "a sizing function from a .mtr or background mesh", "use --size, or the library with Sizing::Function"),
     ('i', "inserting a list of points", "put the points into the .node file, or use the library with Interior::Points"),
@@ -86,22 +84,22 @@ const UNSUPPORTED: [(char, &str, &str); 15] = [
     ('v', "the Voronoi diagram", "leave the switch out"),
     ('S', "a bound on the number of Steiner points", "use a bound on the volume instead"),
     ('T', "a tolerance for coplanar points", "leave it out: all decisions are exact"),
-    ('X', "turning exact arithmetic off", "leave it out: all decisions are exact"),
+    ('X', "inexact arithmetic", "leave it out: all decisions are exact"),
     ('N', "leaving the .node file out", "leave the switch out: .node and .ele are always written"),
     ('E', "leaving the .ele file out", "leave the switch out: .node and .ele are always written"),
-    ('k', "a .vtk file beside the others", "use -o MESH.vtu"),
-    ('g', "a .mesh file beside the others", "use -o MESH.mesh"),
+    ('k', "an additional .vtk file", "use -o MESH.vtu"),
+    ('g', "an additional .mesh file", "use -o MESH.mesh"),
     ('h', "help", "use anastomesh tetrahedralize --help"),
 ];
 
-/// What is understood but changes nothing.
+/// Switches without effect, with the reason.
 const WITHOUT_EFFECT: [(char, &str); 10] = [
     ('C', "every mesh is proved to be consistent"),
     ('I', "files are named as -o says, without a number"),
     ('J', "all points of the input are kept"),
     ('M', "facets are never merged"),
     ('B', "boundary markers are always written"),
-    ('D', "the mesh is as Delaunay as its boundary lets it be"),
+    ('D', "the mesh is already constrained Delaunay where the boundary allows it"),
     ('l', "the order of insertion is fixed"),
     ('L', "the order of insertion is fixed"),
     ('s', "the order of insertion is fixed"),
@@ -134,7 +132,7 @@ impl Switches {
             'q' => self.quality = Some(quality(cursor)?),
             'a' => match cursor.number() {
                 "" => self.region_volumes = true,
-                number => self.max_volume = Some(positive('a', number, "a volume above 0 has to follow, as in a0.1")?),
+                number => self.max_volume = Some(positive('a', number, "expected a volume above 0, as in a0.1")?),
             },
             'A' => self.regions = true,
             'd' => self.check_only = true,
@@ -179,14 +177,14 @@ impl Switches {
             return Err(SwitchError::Unknown { switch: letter });
         };
         cursor.numbers();
-        self.without_effect.push(format!("switch '{letter}' of --tetgen does nothing here: {why}"));
+        self.without_effect.push(format!("switch '{letter}' of --tetgen has no effect: {why}"));
         Ok(())
     }
 
-    /// Passes over numbers behind a switch that has none here, and says so.
+    /// Skips numbers after a switch, with a note.
     fn ignore_number(&mut self, cursor: &mut Cursor, shown: &str, why: &str) {
         if cursor.numbers() {
-            self.without_effect.push(format!("the number of {shown} of --tetgen does nothing here: {why}"));
+            self.without_effect.push(format!("the number of {shown} of --tetgen has no effect: {why}"));
         }
     }
 }
@@ -198,8 +196,8 @@ fn unsupported(letter: char, what: &'static str, instead: &'static str) -> Switc
 /// `q[ratio][/mindihedral]`.
 fn quality(cursor: &mut Cursor) -> Result<Bounds, SwitchError> {
     const RATIO: &str =
-        "a bound on circumradius over shortest edge has to follow, above 0.612 (1.4 to 2 are usual), as in q1.4";
-    const ANGLE: &str = "an angle in degrees, from 0 to below 70.53, has to follow the slash, as in q1.4/10";
+        "expected a bound on circumradius over shortest edge above 0.612 (usual are 1.4 to 2), as in q1.4";
+    const ANGLE: &str = "expected an angle in degrees from 0 to below 70.53 after the slash, as in q1.4/10";
     let max_radius_edge = match cursor.number() {
         "" => USUAL_RATIO,
         number => {
@@ -221,7 +219,7 @@ fn quality(cursor: &mut Cursor) -> Result<Bounds, SwitchError> {
     Ok(Bounds { max_radius_edge: Some(max_radius_edge), min_dihedral, max_volume: None })
 }
 
-/// `O[level][/operations]`: whether it turns improvement off.
+/// `O[level][/operations]`: true if it disables improvement.
 fn optimization(cursor: &mut Cursor) -> bool {
     let level = cursor.number();
     let none = level == "0";
@@ -236,7 +234,7 @@ fn positive(switch: char, number: &str, expected: &'static str) -> Result<f64, S
     value.ok_or_else(|| SwitchError::BadNumber { switch, number: number.into(), expected })
 }
 
-/// The switches that are left.
+/// Remaining switches.
 struct Cursor<'a> {
     rest: &'a str,
 }
@@ -254,8 +252,7 @@ impl<'a> Cursor<'a> {
         rest.is_some()
     }
 
-    /// The digits, points and exponent that come next; empty when there are none. An `e` without digits behind it is
-    /// the next switch.
+    /// Takes the next number; empty if missing. An `e` without digits after it is the next switch.
     fn number(&mut self) -> &'a str {
         let bytes = self.rest.as_bytes();
         let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
@@ -272,7 +269,7 @@ impl<'a> Cursor<'a> {
         number
     }
 
-    /// Passes over numbers with slashes between them; whether there were any.
+    /// Skips numbers separated by slashes; true if there were any.
     fn numbers(&mut self) -> bool {
         let before = self.rest.len();
         loop {
@@ -322,7 +319,7 @@ mod tests {
         assert_eq!(quality("q1.1/20.5p"), bounds(1.1, Some(20.5)));
         assert_eq!(quality("q1.2/0"), bounds(1.2, None));
         for bad in ["q0", "q0.5", "q1.2.3", "q1.4/80", "q1.4/", "q."] {
-            assert!(fault(bad).starts_with("switch 'q' of --tetgen has the number '"), "{}", fault(bad));
+            assert!(fault(bad).starts_with("invalid number '"), "{}", fault(bad));
         }
         assert!(fault("a0").contains("'a'") && fault("a.").contains("above 0"));
     }
@@ -354,13 +351,13 @@ mod tests {
     fn what_is_not_followed_is_named_with_a_remedy() {
         assert_eq!(
             fault("rq"),
-            "switch 'r' of --tetgen: refining a mesh that exists is not supported; give the surface of the mesh as input"
+            "switch 'r' of --tetgen: refinement of an existing mesh is not supported; give the surface of the mesh as input"
         );
         for (text, part) in
             [("pw", "'w'"), ("o2", "o2"), ("pnn", "nn"), ("ee", "ee"), ("T1e-8", "'T'"), ("S100", "'S'")]
         {
             assert!(fault(text).contains(part), "{}", fault(text));
         }
-        assert!(fault("pY?").starts_with("switch '?' of --tetgen is unknown") && fault("pä").contains("'ä'"));
+        assert!(fault("pY?").starts_with("unknown switch '?' of --tetgen") && fault("pä").contains("'ä'"));
     }
 }

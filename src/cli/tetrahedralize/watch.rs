@@ -10,7 +10,7 @@ use crate::cli::stop::Stop;
 use crate::pipeline::StageTime;
 use anastomesh_mesh::progress::{Progress, Stage};
 
-/// Listens to a run: a bar per stage on a terminal, and the time that each takes.
+/// Progress listener: one bar per stage on a terminal, and the time of each stage.
 #[derive(Debug)]
 pub struct Watch {
     shown: bool,
@@ -26,12 +26,12 @@ struct WatchState {
 }
 
 impl Watch {
-    /// No bars when `quiet`, nor without a terminal.
+    /// Creates the listener. No bars are shown if `quiet` or without a terminal.
     pub fn new(quiet: bool, told: Option<ProgressFormat>) -> Self {
         Self { shown: shows_bars(quiet, told), lines: Lines::asked_for(quiet, told), state: Mutex::default() }
     }
 
-    /// Runs a stage of the program's own.
+    /// Runs a stage and records its time.
     pub fn time<T>(&self, stage: &'static str, run: impl FnOnce() -> T) -> T {
         self.enter(stage, 0, 0);
         let result = run();
@@ -39,7 +39,7 @@ impl Watch {
         result
     }
 
-    /// A stage begins, where it is not the current one; the one before it ends.
+    /// Begins a stage unless it is the current one, and ends the previous one.
     fn enter(&self, stage: &'static str, done: u64, total: u64) {
         if let Some(lines) = &self.lines {
             lines.tell(stage, done, total);
@@ -54,19 +54,19 @@ impl Watch {
         state.close();
         state.current = Some((stage, Instant::now()));
         if self.shown {
-            // What is done in one step has nothing to show but that it goes on.
+            // A stage of one step shows a spinner.
             state.bar = Some(stage_bar(stage, if total > 1 { total } else { 0 }));
         }
     }
 
-    /// The current stage ends.
+    /// Ends the current stage.
     pub fn leave(&self) {
         if let Ok(mut state) = self.state.lock() {
             state.close();
         }
     }
 
-    /// The stages in the order in which they began.
+    /// Stages in order of their start.
     pub fn stages(&self) -> Vec<StageTime> {
         self.state.lock().map(|state| state.spent.clone()).unwrap_or_default()
     }
@@ -86,7 +86,7 @@ impl WatchState {
     }
 }
 
-/// What the tetrahedralizer tells goes to a watch, what it asks to a signal.
+/// Listener of the tetrahedralizer: forwards progress to a watch, and stop requests from a signal.
 #[derive(Clone)]
 pub struct Listener(pub Arc<Watch>, pub Stop);
 

@@ -1,8 +1,8 @@
 //! Text report of a meshing run.
 
-use super::{RunReport, ThinBlock};
+use super::{FusedBlock, RunReport, ThinBlock};
 use crate::block::ThinLayers;
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, grouped, tetrahedra};
 use std::fmt;
 
 /// Text report: blocks, retries, failures, sizes and times.
@@ -11,57 +11,70 @@ impl fmt::Display for RunReport {
         let (b, m) = (&self.blocks, &self.mesh);
         writeln!(
             out,
-            "{} clusters (largest {} nodes), {} connectors, {} blocks retried, {} failed",
-            grouped(b.clusters),
-            grouped(b.largest_cluster_nodes),
-            grouped(b.connectors),
-            grouped(self.retries.len()),
+            "{} (largest {}), {}, {} retried, {} failed",
+            counted(b.clusters, "cluster"),
+            counted(b.largest_cluster_nodes, "node"),
+            counted(b.connectors, "connector"),
+            counted(self.retries.len(), "block"),
             grouped(self.failed.len())
         )?;
         for retry in &self.retries {
             writeln!(out, "  retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy)?;
         }
         for f in &self.fused {
-            writeln!(
-                out,
-                "  overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
-                f.block, f.nodes, f.handles, f.loops, f.uncapped
-            )?;
+            writeln!(out, "  overlapping vessels in {} (nodes {:?}): {}", f.block, f.nodes, f.difference())?;
             if let Some(at) = f.astray.outside {
-                writeln!(out, "    an axis is not within the wall at {:.4} {:.4} {:.4}", at.x, at.y, at.z)?;
+                writeln!(out, "    a vessel axis lies outside the wall at {:.4} {:.4} {:.4}", at.x, at.y, at.z)?;
             }
             if let Some([p, q]) = f.astray.fused {
                 writeln!(
                     out,
-                    "    one lumen from {:.4} {:.4} {:.4} to {:.4} {:.4} {:.4}, far from each other along the vessels",
+                    "    distant vessels share one lumen from {:.4} {:.4} {:.4} to {:.4} {:.4} {:.4}",
                     p.x, p.y, p.z, q.x, q.y, q.z
                 )?;
             }
         }
         if self.anastomoses > 0 {
-            writeln!(out, "  {} anastomoses: loops that vessels make which fused", self.anastomoses)?;
+            writeln!(out, "  {} additional loops formed by fused vessels", self.anastomoses)?;
         }
         for f in &self.filled {
             writeln!(
                 out,
-                "  {} loops filled by their own lumen in {} (nodes {:?}): counted as closed",
-                f.loops, f.block, f.nodes
+                "  {} filled by the lumen in {} (nodes {:?}): counted as closed",
+                counted(f.loops.unsigned_abs() as usize, "loop"),
+                f.block,
+                f.nodes
             )?;
         }
         self.write_thin_layers(out)?;
         for failed in &self.failed {
             writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
             if let Some(dump) = &failed.dump {
-                writeln!(out, "    its input is in {dump}")?;
+                writeln!(out, "    input written to {dump}")?;
             }
         }
         if m.tets > 0 {
-            write!(out, "{} tetrahedra, ", grouped(m.tets))?;
+            write!(out, "{}, ", tetrahedra(m.tets))?;
         }
         let [points, wall, caps] = [m.points, m.wall_triangles, m.cap_triangles].map(grouped);
         writeln!(out, "{points} points, {wall} wall triangles, {caps} cap triangles")?;
         let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
         writeln!(out, "{}", times.join(", "))
+    }
+}
+
+impl FusedBlock {
+    /// Difference between the wall of the block and its skeleton.
+    pub(crate) fn difference(&self) -> String {
+        let mut parts = Vec::new();
+        if self.handles != self.loops {
+            let count = |n: i64, what| counted(n.unsigned_abs() as usize, what);
+            parts.push(format!("expected {}, found {}", count(self.loops, "loop"), count(self.handles, "handle")));
+        }
+        if !self.uncapped.is_empty() {
+            parts.push(format!("terminals without a cap {:?}", self.uncapped));
+        }
+        if parts.is_empty() { "the genus is as expected".into() } else { parts.join("; ") }
     }
 }
 
@@ -77,10 +90,9 @@ impl RunReport {
         let sum = |of: fn(&ThinLayers) -> u32| all.iter().map(|thin| u64::from(of(&thin.layers))).sum::<u64>();
         writeln!(
             out,
-            "  layers less than half as thick as asked for, for want of room: at {} points of the wall in {} blocks; \
-             none at {} points",
+            "  layers thinner than half of the request: {} wall points in {}; no layers at {} points",
             sum(|thin| thin.points),
-            all.len(),
+            counted(all.len(), "block"),
             sum(|thin| thin.without)
         )?;
         for ThinBlock { block, nodes, layers } in all.iter().take(Self::THIN) {

@@ -1,9 +1,9 @@
-//! How a machine computes. The functions of the C library differ in the last bit between versions, and between processors
+//! Fingerprint of a machine's arithmetic. The functions of the C library differ in the last bit between versions, and between processors
 //! with and without fused multiplication; blocks that two such machines make have other discs where they meet.
 
 use super::key::{Key, KeyMaker};
 
-/// So many values of each function: where two libraries differ at all, they do so at one argument in some hundreds.
+/// Number of values of each function. Two libraries that differ do so at about one argument in some hundreds.
 const SAMPLES: u32 = 4096;
 
 /// A key of what the functions give that meshing uses.

@@ -1,4 +1,4 @@
-//! Why finished blocks cannot be kept.
+//! Errors of the block store.
 
 use std::fmt;
 use std::io;
@@ -6,21 +6,21 @@ use std::path::PathBuf;
 
 use super::shard::Shard;
 
-/// Why blocks cannot be kept.
+/// Reasons why blocks cannot be stored.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
     /// The folder cannot be used.
-    #[error("{}: cannot be used as work directory: {source}; name a folder that can be written to", path.display())]
+    #[error("{}: cannot be used as work directory: {source}; name a writable folder", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// Another run uses the folder.
     #[error(
-        "{}: another run is using this work directory, alone or as a shard; wait for it, or name another one",
+        "{}: another run uses this work directory; wait for it to end, or name another directory",
         path.display()
     )]
     Locked {
@@ -28,82 +28,82 @@ pub enum StoreError {
         path: PathBuf,
     },
     /// Another run makes the same shard.
-    #[error("{}: shard {shard} is being made by another run; wait for it, or end it", path.display())]
+    #[error("{}: another run makes shard {shard}; wait for it to end, or stop it", path.display())]
     ShardLocked {
         /// The folder.
         path: PathBuf,
-        /// Which one.
+        /// The shard.
         shard: Shard,
     },
-    /// Nothing keeps two runs from writing to one file.
+    /// The file system has no file locks.
     #[error(
-        "{}: the file system of this work directory has no locks ({why}), so two runs could write to one file; name a \
-         folder on another one, or have it mounted with locks that hold on all machines",
+        "{}: the file system of this work directory has no file locks ({why}), so runs could overwrite each other; name a \
+         folder on another file system, or mount this one with locks",
         path.display()
     )]
     NoLocks {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         why: String,
     },
     /// The folder has another number of shards.
     #[error(
-        "{}: this work directory was begun with {was} shards, and {shard} is none of them; give each run of a folder the \
-         same number, or name another folder",
+        "{}: this work directory has {was} shards, but {shard} was requested; give every run the same number of shards, or \
+         name another folder",
         path.display()
     )]
     OtherShards {
         /// The folder.
         path: PathBuf,
-        /// How many there are.
+        /// Number of shards of the folder.
         was: u32,
-        /// The one that is none of them.
+        /// Requested shard.
         shard: Shard,
     },
-    /// Shards have not been made to their end.
+    /// Some shards are not finished.
     #[error(
-        "{}: {} not been made to the end; run {}",
+        "{}: {} not finished; run {}",
         path.display(), listed(shards), if shards.len() == 1 { "it" } else { "them" }
     )]
     Missing {
         /// The folder.
         path: PathBuf,
-        /// Which ones.
+        /// Unfinished shards.
         shards: Vec<Shard>,
     },
-    /// A shard's file is not what it was when the shard ended.
+    /// The file of a finished shard is truncated.
     #[error(
-        "{}: of {bytes} bytes only the first {end} are whole records; run shard {shard} again, which makes the others",
+        "{}: only the first {end} of {bytes} bytes are complete records; run shard {shard} again to complete them",
         path.display()
     )]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// Whose it is.
+        /// Shard of the file.
         shard: Shard,
-        /// Where its whole records end.
+        /// End of the last complete record, in bytes.
         end: u64,
-        /// Where they should.
+        /// Expected length, in bytes.
         bytes: u64,
     },
     /// The folder holds the blocks of another version of the program, another network or other options.
     #[error(
-        "{}: this work directory was begun with {difference}; name another one",
+        "{}: this work directory belongs to {difference}; name another one",
         path.display()
     )]
     Other {
         /// The folder.
         path: PathBuf,
-        /// What is not as it was.
+        /// The first difference.
         difference: Difference,
     },
     /// A block cannot be written.
     #[error("a finished block cannot be written to {place}: {source}; {}", advice(source))]
     Write {
-        /// Where blocks are kept.
+        /// Location of the blocks.
         place: String,
-        /// Why.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A block cannot be read back.
@@ -111,13 +111,13 @@ pub enum StoreError {
     Read(#[from] io::Error),
 }
 
-/// What is not as it was when a work directory was begun.
+/// Difference between a run and the run that created the work directory.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Difference {
-    /// Another version of the program, or what is there is no manifest.
+    /// Another version of the program, or an unreadable manifest.
     Version(String),
-    /// Another processor or C library, whose functions give other last bits.
+    /// Another processor or C library, whose functions round differently.
     Arithmetic,
     /// Another network.
     Network,
@@ -132,7 +132,7 @@ pub enum Difference {
     },
 }
 
-/// So many shards are listed.
+/// Maximum number of listed shards.
 const LISTED: usize = 10;
 
 fn listed(shards: &[Shard]) -> String {
@@ -141,29 +141,27 @@ fn listed(shards: &[Shard]) -> String {
         names.push(format!("{} more", shards.len() - LISTED));
     }
     match &names[..] {
-        [one] => format!("shard {one} has"),
-        _ => format!("shards {} have", names.join(", ")),
+        [one] => format!("shard {one} is"),
+        _ => format!("shards {} are", names.join(", ")),
     }
 }
 
 fn advice(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "make room or name a work directory on a larger disk; blocks in a work directory are kept, so the next run goes on there"
+            "free some space, or name a work directory on a larger disk; finished blocks in a work directory are kept for the next run"
         }
-        _ => "check the disk; blocks in a work directory are kept, so the next run goes on there",
+        _ => "check the disk; finished blocks in a work directory are kept for the next run",
     }
 }
 
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Version(program) => write!(f, "another version ({program})"),
-            Self::Arithmetic => f.write_str(
-                "other last bits of numbers, on a machine with another processor or C library, whose blocks do not fit these",
-            ),
+            Self::Version(program) => write!(f, "another version of the program ({program})"),
+            Self::Arithmetic => f.write_str("another machine type, whose processor or C library rounds differently"),
             Self::Network => f.write_str("another network"),
-            Self::Option { name, was, is } => write!(f, "another option: {name} was {was} and is now {is}"),
+            Self::Option { name, was, is } => write!(f, "other options ({name} was {was}, now {is})"),
         }
     }
 }

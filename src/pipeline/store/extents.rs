@@ -1,4 +1,4 @@
-//! Where records lie in the files of a work directory, told to whoever reads them without knowing what they depend on.
+//! Positions of records in the files of a work directory, for readers without the keys.
 //!
 //! Records are never moved nor changed: as long as the files are there the places hold, whoever adds to them.
 
@@ -23,7 +23,7 @@ pub(crate) struct Extents {
 }
 
 impl Extents {
-    /// How many records there are.
+    /// Number of records.
     pub(crate) fn len(&self) -> usize {
         self.places.len()
     }
@@ -50,7 +50,7 @@ impl Extents {
 }
 
 impl Store {
-    /// Where records lie; none where they are in no work directory.
+    /// Positions of the records; `None` without a work directory.
     pub(crate) fn extents(&self, records: impl Iterator<Item = RecordId>) -> Option<Extents> {
         let Backend::Folder(_, others, own) = &self.place else { return None };
         let own_path = PathBuf::from(own.place());
@@ -86,7 +86,7 @@ impl Store {
         once::write(&path, value).map_err(|source| StoreError::Write { place: path.display().to_string(), source })
     }
 
-    /// What was left in a folder; none where there is nothing, or it is damaged.
+    /// Reads the positions from a folder; `None` if missing or damaged.
     pub(crate) fn left<T: DeserializeOwned>(folder: &Path, what: &str) -> Option<T> {
         once::read(&folder.join(format!("anastomesh.{what}")))
     }

@@ -36,11 +36,11 @@ pub enum Role {
     Shard(Shard),
 }
 
-/// What is in a work directory.
+/// Contents of a work directory.
 pub(super) struct Opened {
     /// The file that this run writes to.
     pub own: LogFile,
-    /// What others have written.
+    /// Records of other runs.
     pub others: Shelf,
     /// Keys of what others have written, then of what is in the own file.
     pub keys: Vec<Key>,

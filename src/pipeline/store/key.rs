@@ -9,7 +9,7 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u128);
 
-/// What records are looked up by, of which there are millions: as much of the key as leaves a chance of less than 2^-48 that
+/// Lookup key of records, of which there are millions: as much of the key as leaves a chance of less than 2^-48 that
 /// two of 2^24 have the same.
 pub(super) type ShortKey = [u32; 3];
 

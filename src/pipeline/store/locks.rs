@@ -8,10 +8,10 @@ use std::time::Duration;
 use super::error::StoreError;
 use anastomesh_mesh::progress::{Cancelled, Progress};
 
-/// How often a lock that others hold is asked for again.
+/// Interval between attempts to get a lock.
 const AGAIN: Duration = Duration::from_millis(20);
 
-/// How a lock is held.
+/// Mode of a lock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LockMode {
     /// By one run alone.
@@ -60,7 +60,7 @@ pub(super) fn wait_for(folder: &Path, name: &str, progress: &dyn Progress) -> Re
     }
 }
 
-/// Whether a lock was granted.
+/// True if a lock was granted.
 fn is_taken(folder: &Path, answer: Result<(), TryLockError>) -> Result<bool, StoreError> {
     match answer {
         Ok(()) => Ok(true),

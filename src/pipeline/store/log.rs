@@ -21,7 +21,7 @@ pub(super) struct LogFile {
     name: String,
     writer: Mutex<Writer>,
     reader: File,
-    /// Where each record ends; the next one begins there.
+    /// End of each record, which is the start of the next.
     ends: RwLock<Vec<u64>>,
     /// Held as long as the file is in use.
     _locks: Vec<File>,
@@ -57,12 +57,12 @@ impl LogFile {
         Ok(Self { name, writer: Mutex::new(Writer { file, end }), reader, ends: RwLock::new(ends), _locks: locks })
     }
 
-    /// Where it is, for people.
+    /// Name of the file in messages.
     pub(super) fn place(&self) -> String {
         self.name.clone()
     }
 
-    /// Where a record lies.
+    /// Position of a record.
     pub(super) fn extent(&self, record: usize) -> Option<Range<u64>> {
         let ends = self.ends.read().unwrap_or_else(PoisonError::into_inner);
         let before = record.checked_sub(1).map_or(0, |before| ends.get(before).copied().unwrap_or(0));
@@ -79,7 +79,7 @@ impl LogFile {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
     }
 
-    /// How many records it holds.
+    /// Number of records.
     pub(super) fn len(&self) -> usize {
         self.ends.read().unwrap_or_else(PoisonError::into_inner).len()
     }
@@ -169,9 +169,9 @@ fn head_of(key: Key, bytes: &[u8]) -> [u8; HEAD] {
 /// The sound records at the beginning of a file.
 pub(super) struct Scanned {
     pub records: Vec<(Key, Range<u64>)>,
-    /// Where they end.
+    /// End of the records.
     pub end: u64,
-    /// Where the file ends.
+    /// End of the file.
     pub length: u64,
 }
 

@@ -1,4 +1,4 @@
-//! What a work directory was begun with: a run goes on only with blocks of the same network, options and version.
+//! Manifest of a work directory: a run continues only with blocks of the same network, options and version.
 
 use std::fs;
 use std::io;
@@ -16,7 +16,7 @@ const FORMAT: u32 = 4;
 
 pub(crate) const MANIFEST: &str = "anastomesh.json";
 
-/// What a work directory belongs to.
+/// Identity of the run that owns a work directory.
 ///
 /// ```
 /// use anastomesh::io::{NetworkOptions, read_network};
@@ -39,7 +39,7 @@ pub(crate) const MANIFEST: &str = "anastomesh.json";
 pub struct Manifest {
     format: u32,
     program: String,
-    /// How the machine computes: other results in the last bits are other discs at joints.
+    /// Fingerprint of the arithmetic: results that differ in the last bits give other discs at joints.
     arithmetic: String,
     network: String,
     options: serde_json::Value,
@@ -53,7 +53,7 @@ impl Manifest {
         Self { format: FORMAT, program, arithmetic, network: format!("{:032x}", fingerprint(network).0), options }
     }
 
-    /// What a folder was begun with.
+    /// Reads the manifest of a folder.
     pub(super) fn begun(&self, folder: &Path) -> io::Result<Begun> {
         let text = match fs::read(folder.join(MANIFEST)) {
             Ok(text) => text,
@@ -115,7 +115,7 @@ fn first_difference(name: &str, was: &serde_json::Value, is: &serde_json::Value)
     Some(Difference::Option { name: name.into(), was: was.to_string(), is: is.to_string() })
 }
 
-/// What a work directory was begun with.
+/// Manifest as stored in a work directory.
 pub(super) enum Begun {
     Nothing,
     Same,

@@ -67,7 +67,7 @@ enum Backend {
     File(LogFile),
     /// A work directory: its path, what others have written there, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
-    /// What others have written, to be read only.
+    /// Records of other runs, read-only.
     Shelf(Shelf),
 }
 
@@ -164,7 +164,7 @@ impl Store {
         Ok(*slot.insert(RecordId(id as u32)))
     }
 
-    /// How many records this run, and those before it in its place, have kept.
+    /// Number of records of this run and earlier runs in its place.
     pub(crate) fn own_records(&self) -> usize {
         match &self.place {
             Backend::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),

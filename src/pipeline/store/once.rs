@@ -1,4 +1,4 @@
-//! What is the same for all runs in a work directory, made by one of them and read by the others: the refined network, the
+//! Data shared by all runs in a work directory, made by one and read by the others: the refined network, the
 //! partition.
 
 use std::fs::File;
@@ -83,7 +83,7 @@ pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
     part.persist(path).map(drop).map_err(|e| e.error)
 }
 
-/// What is kept; none where there is nothing, or it is damaged: then it is made again.
+/// Reads the stored data; `None` if missing or damaged, so that they are made again.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
     let input = Summed::new(BufReader::with_capacity(1 << 18, File::open(path).ok()?));
     // Numbers are read through this. Texts would need room for their length: nothing that is kept has any.

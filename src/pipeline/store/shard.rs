@@ -17,13 +17,13 @@ pub struct Shard {
 #[non_exhaustive]
 pub enum NoShard {
     /// Not two numbers.
-    #[error("'{0}' is no shard: give its number and how many there are, such as 3/8")]
+    #[error("invalid shard '{0}': give number and count, such as 3/8")]
     Text(String),
     /// A number that is none of these.
-    #[error("shard {0}/{1} is out of range: with {1} shards they are 1/{1} to {1}/{1}")]
+    #[error("shard {0}/{1} is out of range: give 1/{1} to {1}/{1}")]
     Range(u32, u32),
     /// None, or too many.
-    #[error("{0} shards: there can be 1 to {MOST}")]
+    #[error("invalid number of shards {0}: give 1 to {MOST}")]
     Count(u32),
 }
 
@@ -58,7 +58,7 @@ impl Shard {
         self.number as usize - 1
     }
 
-    /// How many there are.
+    /// Number of shards.
     pub fn of(self) -> usize {
         self.of as usize
     }

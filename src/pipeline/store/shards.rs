@@ -16,7 +16,7 @@ use super::whole_file::write_whole;
 /// Says how many shards there are.
 const SHARDS: &str = "anastomesh.shards";
 
-/// What a shard leaves when all of its blocks have been made, or have failed.
+/// Record of a shard whose blocks have all been made or failed.
 #[derive(Debug, Serialize, Deserialize)]
 struct ShardRecord {
     /// Bytes of its records.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::log::read_exact_at;
 
-/// So many files are open at a time: systems allow few, and shards may be many.
+/// Maximum number of open files. Systems allow few, and shards may be many.
 const OPEN: usize = 128;
 
 /// Records of any number of files, numbered through.
@@ -40,7 +40,7 @@ impl Shelf {
         Self { files, extents, open: Mutex::default() }
     }
 
-    /// How many records there are.
+    /// Number of records.
     pub(super) fn len(&self) -> usize {
         self.extents.len()
     }

@@ -40,7 +40,7 @@ impl LeftPatch {
     }
 }
 
-/// How patches are left.
+/// Stored form of patches.
 pub(super) mod patches {
     use super::{LeftPatch, Patch};
     use serde::{Deserialize, Deserializer, Serializer};
@@ -63,12 +63,12 @@ pub struct LeftWhole {
 }
 
 impl LeftWhole {
-    /// Whether a folder is a work directory.
+    /// True if a folder is a work directory.
     pub fn may_be_in(folder: &Path) -> bool {
         folder.join(MANIFEST).is_file()
     }
 
-    /// What is left in a folder; none where no run has come so far, or it is damaged.
+    /// Reads the whole from a folder; `None` if no run has finished, or if it is damaged.
     pub fn open(folder: &Path) -> Option<Self> {
         // Records are numbered as the parts.
         let (extents, mut plan): (Extents, Box<Numbering>) = Store::left(folder, NAME)?;

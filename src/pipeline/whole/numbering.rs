@@ -1,4 +1,4 @@
-//! Which number each vertex and tetrahedron of the whole gets.
+//! Numbering of the vertices and tetrahedra of the whole mesh.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -14,7 +14,7 @@ use anastomesh_mesh::{Patch, WALL};
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Numbering {
     pub parts: Vec<PartPlan>,
-    /// How many parts are clusters.
+    /// Number of parts that are clusters.
     pub clusters: u32,
     #[serde(with = "super::left::patches")]
     pub patches: Vec<Patch>,
@@ -44,7 +44,7 @@ pub(super) struct PartPlan {
 
 /// More vertices than 32 bits can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the whole mesh has {0} points, more than 32 bits can count; mesh its parts, or give a smaller rho")]
+#[error("the mesh has {0} points, more than 32-bit indices allow; mesh the network in parts, or give a smaller rho")]
 pub struct TooManyPoints(pub u64);
 
 impl Numbering {
@@ -104,7 +104,7 @@ impl Numbering {
         Ok(self.parts.len() as u32 - 1)
     }
 
-    /// Whether places and joints fit together, of what was read from a file.
+    /// True if places and joints read from a file are consistent.
     pub fn is_sound(&self) -> bool {
         let ends = |plan: &PartPlan| (u64::from(plan.first_point), plan.first_tet);
         let last = self.parts.last().map_or((0, 0), ends);
@@ -122,13 +122,13 @@ impl Numbering {
         self.parts[part as usize]
     }
 
-    /// How many points a part has of its own.
+    /// Number of points that belong to one part.
     pub fn points_of(&self, part: u32) -> u32 {
         let end = self.parts.get(part as usize + 1).map_or(self.counts.points as u32, |next| next.first_point);
         end - self.part(part).first_point
     }
 
-    /// How many tetrahedra a part has.
+    /// Number of tetrahedra of a part.
     pub fn tets_of(&self, part: u32) -> usize {
         let end = self.parts.get(part as usize + 1).map_or(self.counts.tets as u64, |next| next.first_tet);
         (end - self.part(part).first_tet) as usize

@@ -6,7 +6,7 @@ use super::shape::bars;
 use crate::pipeline::RunReport;
 use crate::report::plot::Panel;
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, grouped};
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -44,8 +44,8 @@ pub fn failed_blocks(network: &Skeleton, run: &RunReport) -> io::Result<Section>
     let nodes: BTreeSet<u32> = run.failed.iter().flat_map(|failed| failed.nodes.iter().copied()).collect();
     let is_marked = |&id: &EdgeId| network.edge(id).nodes.iter().any(|&n| nodes.contains(&network.node(n).original));
     let marked: Vec<EdgeId> = network.edge_ids().filter(is_marked).collect();
-    let picture = network_picture(network, &marked, "Vessels of the blocks that could not be meshed (red).");
-    Section::new("What is missing").pictures(&[picture], false)
+    let picture = network_picture(network, &marked, "Vessels of failed blocks (red).");
+    Section::new("Failed blocks").pictures(&[picture], false)
 }
 
 /// Section on blocks, stages, retries and failures.
@@ -58,7 +58,7 @@ pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
         .tiles(&[
             ("clusters", grouped(blocks.clusters)),
             ("connectors", grouped(blocks.connectors)),
-            ("largest cluster", format!("{} nodes", blocks.largest_cluster_nodes)),
+            ("largest cluster", counted(blocks.largest_cluster_nodes, "node")),
             ("retried, failed", format!("{}, {}", run.retries.len(), run.failed.len())),
             ("longest block", format!("{} ({:.2} s)", times.longest, times.longest_seconds)),
             ("all stages", format!("{seconds:.1} s")),
@@ -87,15 +87,12 @@ fn trouble(run: &RunReport) -> Vec<(Mark, String)> {
     for failed in &run.failed {
         let mut text = format!("{} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
         if let Some(dump) = &failed.dump {
-            let _ = write!(text, "; its input is in {dump}");
+            let _ = write!(text, "; input written to {dump}");
         }
         items.push((Mark::Bad, text));
     }
     for fused in run.fused.iter().take(LISTED) {
-        let text = format!(
-            "overlapping vessels in {} (nodes {:?}): {} handles for {} loops, terminals without a cap {:?}",
-            fused.block, fused.nodes, fused.handles, fused.loops, fused.uncapped
-        );
+        let text = format!("overlapping vessels in {} (nodes {:?}): {}", fused.block, fused.nodes, fused.difference());
         items.push((Mark::Bad, text));
     }
     for retry in run.retries.iter().take(LISTED) {

@@ -94,7 +94,7 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
         };
         let image = draw(mesh, camera, Colour::Patch, Some(cut))?;
         let [x, y, z]: [f64; 3] = place.into();
-        pictures.push((image, format!("Not so: {statement}. In the ring: {x:.6} {y:.6} {z:.6}")));
+        pictures.push((image, format!("Failed: {statement} (circled, at {x:.6} {y:.6} {z:.6})")));
     }
     Ok(pictures)
 }

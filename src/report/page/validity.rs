@@ -2,7 +2,7 @@
 
 use super::html::{Mark, Section};
 use super::pictures::offenders;
-use anastomesh_mesh::check::text::{describe, extent, reason, verdict};
+use anastomesh_mesh::check::text::{describe, reason, verdict, violation};
 use anastomesh_mesh::check::{CheckReport, Outcome, Verdict};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::units::grouped;
@@ -48,8 +48,8 @@ pub fn validity(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Sectio
         let statement = line.line.statement();
         items.push(match line.outcome {
             Outcome::Pass => (Mark::Good, statement.to_owned()),
-            Outcome::NotChecked(why) => (Mark::Neither, format!("{statement}: not checked, {}", reason(why))),
-            Outcome::Fail => (Mark::Bad, format!("{statement}: {}", extent(line))),
+            Outcome::NotChecked(why) => (Mark::Neither, format!("{statement}: skipped, because {}", reason(why))),
+            Outcome::Fail => (Mark::Bad, violation(line)),
         });
         items.extend(line.offenders.iter().take(LISTED).map(|o| (Mark::Below, describe(o))));
         let hidden = line.count.saturating_sub(line.offenders.len().min(LISTED) as u64);

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum FileError<F: Error + 'static> {
     /// The extension is unknown.
-    #[error("{}: the extension names no {kind} (known: {known})", path.display())]
+    #[error("{}: {}; known: {known}", path.display(), unrecognised(path, kind))]
     UnknownFormat {
         /// Path of the file.
         path: PathBuf,
-        /// Kind of format that was expected, such as a known mesh format.
+        /// Kind of file that was expected, such as `mesh`.
         kind: &'static str,
         /// Known extensions.
         known: &'static str,
@@ -50,7 +50,7 @@ pub enum FileError<F: Error + 'static> {
         fault: F,
     },
     /// A mesh to write is invalid: a cell refers to a missing point.
-    #[error("{}: not written: cell {cell} of the mesh names a point that does not exist", path.display())]
+    #[error("{}: not written: cell {cell} of the mesh refers to a missing point", path.display())]
     BadMesh {
         /// Path of the file.
         path: PathBuf,
@@ -85,6 +85,13 @@ impl<F: Error> FileError<F> {
             Self::Content { path, fault } => FileError::Content { path, fault: fault.into() },
             Self::BadMesh { path, cell } => FileError::BadMesh { path, cell },
         }
+    }
+}
+
+fn unrecognised(path: &Path, kind: &str) -> String {
+    match path.extension() {
+        Some(extension) => format!("unrecognised {kind} extension '.{}'", extension.to_string_lossy()),
+        None => format!("missing {kind} extension"),
     }
 }
 

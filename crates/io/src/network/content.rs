@@ -1,6 +1,7 @@
 //! Network file contents, reader options, and additional arrays.
 
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{LineGroup, NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
@@ -161,31 +162,32 @@ pub enum NetworkNote {
 impl fmt::Display for NetworkNote {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::NodeRadii { array } => write!(f, "radii of nodes: array '{array}' on the points"),
-            Self::EdgeRadii { array } => write!(f, "radii of vessels: array '{array}' on the lines"),
+            Self::NodeRadii { array } => write!(f, "node radii: array '{array}' on the points"),
+            Self::EdgeRadii { array } => write!(f, "vessel radii: array '{array}' on the lines"),
             Self::NodeRadiiFromEdges => {
-                write!(f, "no radii on the points: nodes have the radius of their thickest vessel")
+                write!(f, "no node radii: each node gets the radius of its thickest vessel")
             }
-            Self::Halved { array } => write!(f, "array '{array}' holds diameters by its name: halved"),
+            Self::Halved { array } => write!(f, "array '{array}' has the name of a diameter: values halved"),
             Self::NotUsed { arrays } => {
-                write!(f, "arrays that could be radii too, not used: {}", arrays.join(", "))
+                write!(f, "unused arrays that may be radii: {}", arrays.join(", "))
             }
-            Self::Grouped { vessels } => write!(f, "arrays GroupIds and Blanking: lines of {vessels} vessels"),
-            Self::OtherCells { count } => write!(f, "{count} cells that are no lines were ignored"),
-            Self::Planar => write!(f, "no coordinates z: all nodes lie in the plane z = 0"),
-            Self::Diameters => write!(f, "radii taken for diameters, as asked: halved"),
+            Self::Grouped { vessels } => {
+                write!(f, "arrays GroupIds and Blanking: lines of {}", counted(*vessels, "vessel"))
+            }
+            Self::OtherCells { count } => write!(f, "{} other than lines ignored", counted(*count, "cell")),
+            Self::Planar => write!(f, "no z coordinates: all nodes have z = 0"),
+            Self::Diameters => write!(f, "radii halved (--diameters)"),
             Self::Scaled { positions, radii } => {
-                write!(f, "positions multiplied by {positions}, radii by {radii}, as asked")
+                write!(f, "positions multiplied by {positions}, radii by {radii}")
             }
-            Self::Unit { from, to } if from == to => write!(f, "lengths in {from}, as given"),
-            Self::Unit { from, to } => write!(f, "lengths in {from}, as given; in {to} from here on"),
-            Self::EdgesFrom { file } => write!(f, "edges: from {file}"),
-            Self::Bridged { count } => write!(
-                f,
-                "{count} vessels begin at another place than the joint they leave from: a short vessel put between"
-            ),
+            Self::Unit { from, to } if from == to => write!(f, "lengths in {from}"),
+            Self::Unit { from, to } => write!(f, "lengths converted from {from} to {to}"),
+            Self::EdgesFrom { file } => write!(f, "edges read from {file}"),
+            Self::Bridged { count } => {
+                write!(f, "{} added between joints and vessel ends", counted(*count, "short vessel"))
+            }
             Self::OutOfProportion { radius, extent } => {
-                write!(f, "the largest radius is {radius} in a network of extent {extent}: are both in one unit?")
+                write!(f, "the largest radius is {radius} in a network of extent {extent}: check the units")
             }
         }
     }

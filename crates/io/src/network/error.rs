@@ -39,7 +39,7 @@ pub enum NetworkFileError {
         path: PathBuf,
     },
     /// SWC files can contain trees only.
-    #[error("{}: several vessels lead to node {}: only trees are written as .swc; name a .vtp file", path.display(), node.0)]
+    #[error("{}: several vessels lead to node {}, but .swc can only contain trees; name a .vtp file", path.display(), node.0)]
     NotATree {
         /// Path of the file.
         path: PathBuf,
@@ -47,7 +47,7 @@ pub enum NetworkFileError {
         node: NodeId,
     },
     /// The operating system reported a write error.
-    #[error("{}: cannot be written: {source}; name a file in a folder that exists and can be written to", path.display())]
+    #[error("{}: cannot be written: {source}; name a file in an existing, writable folder", path.display())]
     Write {
         /// Path of the file.
         path: PathBuf,
@@ -57,8 +57,8 @@ pub enum NetworkFileError {
 }
 
 impl NetworkFileError {
-    /// Reports that no array of the file is named like a radius, so that
-    /// [`radius_array`](super::NetworkOptions::radius_array) has to name one.
+    /// True if the file has arrays but none has the name of a radius, so that
+    /// [`radius_array`](super::NetworkOptions::radius_array) must select one.
     pub fn lacks_radii(&self) -> bool {
         let Self::File(FileError::Content { fault, .. }) = self else { return false };
         let (NetworkFault::Vtp(VtpError::Radius(radius))
@@ -72,7 +72,7 @@ impl NetworkFileError {
         else {
             return false;
         };
-        matches!(radius, RadiusFault::NoRadius { .. })
+        matches!(radius, RadiusFault::NoRadius { available } if !available.is_empty())
     }
 }
 
@@ -115,14 +115,14 @@ pub enum NetworkFault {
     Sv1d(#[from] Sv1dError),
     /// The format has no named node arrays.
     #[error(
-        "it has no array '{wanted}', as files of its format have none on nodes that are found by a name: \
-         write the network as .vtp, .vtk, .csv, .graphml or .json"
+        "this format has no named node arrays, so '{wanted}' does not exist: write the network as .vtp, .vtk, .csv, \
+         .graphml or .json"
     )]
     NoNodeArrays {
         /// Requested name.
         wanted: String,
     },
     /// A number is unusable.
-    #[error("{0}; correct the file, or let `anastomesh prepare` fill radii that cannot be used")]
+    #[error("{0}; correct the file, or let `anastomesh prepare` fill invalid radii")]
     Numbers(#[from] SkeletonError),
 }

@@ -53,7 +53,7 @@ impl NetworkFormat {
     /// # Errors
     /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, NetworkFileError> {
-        let (kind, known) = ("known network format", KNOWN);
+        let (kind, known) = ("network", KNOWN);
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
         Ok(by_extension(path, &EXTENSIONS).ok_or_else(unknown)?)
     }

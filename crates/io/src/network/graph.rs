@@ -37,16 +37,16 @@ impl fmt::Display for GraphPlace {
 #[non_exhaustive]
 pub enum GraphFault {
     /// There are no nodes.
-    #[error("there is no node in the file: is it a graph with positions?")]
+    #[error("the file has no nodes: is it a graph with positions?")]
     NoNodes,
     /// There are no edges.
-    #[error("there is no edge in the file ({nodes} nodes): a network needs vessels")]
+    #[error("the file has no edges ({nodes} nodes): a network needs vessels")]
     NoEdges {
         /// Number of nodes.
         nodes: usize,
     },
     /// Two nodes have an equal name.
-    #[error("{place}: node '{name}' is there already, at {first}; names must differ")]
+    #[error("{place}: duplicate node '{name}', first defined at {first}; names must differ")]
     RepeatedNode {
         /// Place in the file.
         place: GraphPlace,
@@ -56,7 +56,7 @@ pub enum GraphFault {
         first: GraphPlace,
     },
     /// An edge refers to a missing node.
-    #[error("{place}: an edge ends at node '{name}', which is not in the file: correct it")]
+    #[error("{place}: an edge ends at the unknown node '{name}': correct it")]
     UnknownNode {
         /// Place in the file.
         place: GraphPlace,
@@ -65,7 +65,7 @@ pub enum GraphFault {
     },
     /// No positions are known.
     #[error(
-        "the nodes have no coordinates: attributes x, y (and z), or a list named position, pos or coords; there are: {}",
+        "the nodes have no coordinates: give attributes x, y (and z), or a list named position, pos or coords; found: {}",
         if available.is_empty() { "none".to_owned() } else { available.join(", ") }
     )]
     NoPositions {
@@ -83,7 +83,7 @@ pub enum GraphFault {
         what: String,
     },
     /// A value is not a number.
-    #[error("{place}: {what} is '{text}', which is no number: correct it")]
+    #[error("{place}: {what} is '{text}', not a number: correct it")]
     NotANumber {
         /// Place in the file.
         place: GraphPlace,
@@ -99,7 +99,7 @@ pub enum GraphFault {
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
     /// The number of nodes or edges exceeds the index range.
-    #[error("there are more nodes than can be numbered ({})", u32::MAX)]
+    #[error("too many nodes for 32-bit indices ({})", u32::MAX)]
     TooMany,
 }
 

@@ -109,11 +109,11 @@ fn numbers_of_nodes_come_from_every_format_that_has_them() {
             read_network_from(bytes, *format, &options).map_err(|e| e.to_string())
         };
         if matches!(format, NetworkFormat::Amira | NetworkFormat::Sv1d) {
-            assert!(asked("radius").unwrap_err().contains("have none on nodes"), "{name}");
+            assert!(asked("radius").unwrap_err().contains("has no named node arrays"), "{name}");
             continue;
         }
         let said = asked("nothing of the kind").unwrap_err();
-        assert!(said.contains("no array 'nothing of the kind' on the nodes; there are: "), "{name}: {said}");
+        assert!(said.contains("no node array 'nothing of the kind'; node arrays: "), "{name}: {said}");
         let there = said.rsplit(": ").next().unwrap_or_default().split(", ").filter(|name| *name != "none");
         // Vectors and words are not accepted; a format may have numbers on edges only.
         let files: Vec<NetworkFile> = there.clone().filter_map(|name| asked(name).ok()).collect();
@@ -134,12 +134,12 @@ fn tables_say_where() {
     says("0,0,10,2", "0,0,10", "line 3, table of nodes: 3 columns where the first row has 4");
     says("0,0,10,2", "0,,10,2", "line 3: node '1' has no y");
     says("0,0,10,2", "0,0,10,two", "line 3: radius is 'two'");
-    says("1,3", "1,4", "line 10: an edge ends at node '4'");
+    says("1,3", "1,4", "line 10: an edge ends at the unknown node '4'");
     says("1,3", "1,3,3", "line 10, table of edges: 3 columns where the first row has 2");
-    says("source,target", "one,two", "where edges begin and end");
+    says("source,target", "one,two", "no columns for the ends of edges");
     says("x,y,z,radius", "a,b,c,radius", "coordinates");
-    says("radius", "size", "choose one of them");
-    says("\n\n", "\n", "one table alone");
+    says("radius", "size", "choose one of: ");
+    says("\n\n", "\n", "only one table");
 }
 
 #[test]
@@ -149,11 +149,11 @@ fn graphs_say_where() {
         assert!(message.contains(what), "{message}");
     };
     let xml = NetworkFormat::GraphXml;
-    says(GRAPHML, xml, "target=\"n3\"", "target=\"n9\"", "node 'n9', which is not in the file");
+    says(GRAPHML, xml, "target=\"n3\"", "target=\"n9\"", "the unknown node 'n9'");
     says(GRAPHML, xml, "target=\"n3\"", "aim=\"n3\"", "<edge> has no attribute 'to'");
-    says(GRAPHML, xml, "<node id=\"n1\"", "<node id=\"n0\"", "node 'n0' is there already, at byte");
+    says(GRAPHML, xml, "<node id=\"n1\"", "<node id=\"n0\"", "duplicate node 'n0', first defined at byte");
     says(GRAPHML, xml, "<graphml", "<graph", "<graph>, not <graphml> or <gxl>");
-    says(GRAPHML, xml, "</node>", "</knot>", "well-formed XML at byte");
+    says(GRAPHML, xml, "</node>", "</knot>", "invalid XML at byte");
     says(GRAPHML, xml, "</graphml>", "", "the file ends inside <graphml>");
     says(GXL, xml, "<float>10</float>", "<float>ten</float>", "node 'n1' has no position");
     says(
@@ -164,7 +164,7 @@ fn graphs_say_where() {
         "is 'wide'",
     );
     says(b"<svg></svg>", xml, "svg></svg>", "svg/>", "<svg>, not <graphml> or <gxl>");
-    says(PAJEK, NetworkFormat::Pajek, "2 3 4", "2 3 5", "line 10: an edge ends at node '5'");
+    says(PAJEK, NetworkFormat::Pajek, "2 3 4", "2 3 5", "line 10: an edge ends at the unknown node '5'");
     says(PAJEK, NetworkFormat::Pajek, "2 3 4", "2", "line 10: an edge needs");
     says(PAJEK, NetworkFormat::Pajek, "*Edgeslist", "*Matrix", "line 9: the section '*matrix'");
     says(PAJEK, NetworkFormat::Pajek, "*Vertices 4", "Vertices 4", "*Vertices");
@@ -174,7 +174,7 @@ fn graphs_say_where() {
         NetworkFormat::Json,
         "\"target\": 3",
         "\"target\": 7",
-        "edge 2 of the list (from 0): an edge ends at node '7'",
+        "edge 2 of the list (from 0): an edge ends at the unknown node '7'",
     );
     says(JSON, NetworkFormat::Json, "\"target\": 3", "\"target\": null", "edge 2 of the list (from 0): 'target'");
     says(JSON, NetworkFormat::Json, "\"nodes\"", "\"knots\"", "no list 'nodes'");
@@ -203,16 +203,16 @@ fn amira_and_the_solver_say_where() {
     amira("# AmiraMesh", "# Mesh", "first line");
     amira("ASCII", "BINARY-LITTLE-ENDIAN", "ASCII");
     amira("define VERTEX 4", "define VERTEX 99999999999", "line 4: a number of vertices");
-    amira("define VERTEX 4", "define VERTEX 5", "line 26: '@2' stands where");
-    amira("1 3\n", "1 4\n", "edge 1 (from 0) names vertex 4");
-    amira("@3\n3\n", "@3\n4\n", "edges have 6 points together, but 5");
-    amira("@3\n3\n", "@3\n1\n", "edges have 3 points together, but 5");
-    amira("\n@5\n", "\n@6\n", "'@6' are declared nowhere");
-    amira("thickness", "colour", "choose one of them");
+    amira("define VERTEX 4", "define VERTEX 5", "line 26: expected ");
+    amira("1 3\n", "1 4\n", "edge 1 (from 0) refers to vertex 4");
+    amira("@3\n3\n", "@3\n4\n", "edges have 6 points in total, but the file has 5");
+    amira("@3\n3\n", "@3\n1\n", "edges have 3 points in total, but the file has 5");
+    amira("\n@5\n", "\n@6\n", "'@6' have no declaration");
+    amira("thickness", "colour", "choose one of: ");
     amira("EDGE { int[2] EdgeConnectivity } @2", "EDGE { int[2] EdgeConnectivity @2", "line 14");
     let solver = |from: &str, to: &str, what: &str| says(SV1D, NetworkFormat::Sv1d, from, to, what);
-    solver("NODE 3 0", "NODE 3 zero", "line 6: 'zero' stands where coordinate x");
-    solver("NODE 3", "NODE 2", "line 6: node '2' is there already");
+    solver("NODE 3 0", "NODE 3 zero", "line 6: expected coordinate x, found 'zero'");
+    solver("NODE 3", "NODE 2", "line 6: duplicate node '2'");
     solver("OUT0 2 1 2", "OUT0 2 1 7", "line 9: segment '7'");
     solver("OUT0 2 1 2", "OUT0 99999999 1 2", "line 9");
     solver("JOINTOUTLET OUT0", "JOINTOUTLET OUT1", "line 7");

@@ -13,13 +13,13 @@ pub(super) const GROUPS: [&str; 2] = ["GroupIds", "Blanking"];
 #[non_exhaustive]
 pub enum RadiusFault {
     /// No array name indicates a radius.
-    #[error("no array on nodes or vessels is named like a radius; there are: {}; choose one of them", list(available))]
+    #[error("{}", no_radius(available))]
     NoRadius {
         /// Names of the existing arrays.
         available: Vec<String>,
     },
     /// The requested array does not exist.
-    #[error("there is no array '{wanted}' on nodes or vessels; there are: {}", list(available))]
+    #[error("the file has no array '{wanted}' on nodes or vessels; arrays: {}", list(available))]
     UnknownArray {
         /// Requested name.
         wanted: String,
@@ -33,7 +33,7 @@ pub enum RadiusFault {
 #[non_exhaustive]
 pub enum NodeArrayFault {
     /// The array does not exist.
-    #[error("there is no array '{wanted}' on the nodes; there are: {}", list(available))]
+    #[error("the file has no node array '{wanted}'; node arrays: {}", list(available))]
     Unknown {
         /// Requested name.
         wanted: String,
@@ -41,7 +41,7 @@ pub enum NodeArrayFault {
         available: Vec<String>,
     },
     /// The array has several components.
-    #[error("array '{array}' has {components} numbers for each node: one is needed")]
+    #[error("array '{array}' has {components} components, but 1 is required")]
     Components {
         /// Name of the array.
         array: String,
@@ -57,7 +57,16 @@ pub(super) fn node_array(names: &[String], options: &NetworkOptions) -> Result<O
     named(names, wanted).map(Some).ok_or_else(unknown)
 }
 
-/// Names as a readable list, truncated if very long.
+/// Text on a missing radius array.
+fn no_radius(available: &[String]) -> String {
+    if available.is_empty() {
+        "the file has no radius array; add one".into()
+    } else {
+        format!("no array has the name of a radius; choose one of: {}", list(available))
+    }
+}
+
+/// Names as a readable list, truncated if too long.
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 40;
     let more = if names.len() > SHOWN { format!(" and {} more", names.len() - SHOWN) } else { String::new() };

@@ -134,7 +134,7 @@ fn an_array_of_nodes_is_kept_when_it_is_asked_for() {
         "{}",
         said("Length")
     );
-    assert!(said("Way").contains("2 numbers for each node"), "{}", said("Way"));
+    assert!(said("Way").contains("has 2 components"), "{}", said("Way"));
     assert!(matches!(read(Some("Short")).unwrap_err(), VtpError::WrongLength { expected: 3, found: 2, .. }));
 }
 

@@ -18,22 +18,22 @@ pub enum NpyFault {
     #[error("is missing: write it with numpy.save")]
     Missing,
     /// The file is not an array.
-    #[error("is no .npy file: write it with numpy.save")]
+    #[error("is not an .npy file: write it with numpy.save")]
     NotNpy,
     /// The format version is not supported.
-    #[error("has version {major} of the format; 1, 2 and 3 are read")]
+    #[error("has the unsupported format version {major}; use 1, 2 or 3")]
     Version {
         /// Major version.
         major: u8,
     },
     /// The header is truncated or malformed.
-    #[error("its header cannot be read ({what}): write it again with numpy.save")]
+    #[error("has an invalid header ({what}): write it again with numpy.save")]
     Header {
         /// Fault of the header.
         what: &'static str,
     },
     /// The item type is not suitable.
-    #[error("its items are of type '{found}', and {wanted} are needed: convert it with astype")]
+    #[error("has items of type '{found}', expected {wanted}: convert it with astype")]
     Type {
         /// Type found, in `NumPy` notation.
         found: String,
@@ -41,7 +41,7 @@ pub enum NpyFault {
         wanted: &'static str,
     },
     /// The number of columns is wrong.
-    #[error("has the shape {}, and {wanted} is needed", shown(found))]
+    #[error("has shape {}, expected {wanted}", shown(found))]
     Shape {
         /// Shape found.
         found: Vec<usize>,
@@ -67,13 +67,13 @@ pub enum NpyFault {
         wanted: usize,
     },
     /// The number of rows exceeds the index range.
-    #[error("has {found} rows, more than can be numbered with 32 bits")]
+    #[error("has {found} rows, too many for 32-bit indices")]
     TooMany {
         /// Number of rows found.
         found: usize,
     },
     /// A row refers to a missing element.
-    #[error("row {row} names {index}, but {of} has {count} rows, the first is 0")]
+    #[error("row {row} refers to {index}, but {of} has {count} rows, numbered from 0")]
     Index {
         /// First such row.
         row: usize,
@@ -85,13 +85,13 @@ pub enum NpyFault {
         count: usize,
     },
     /// A number is infinite or NaN.
-    #[error("row {row} has a number that is infinite or not a number: correct it")]
+    #[error("row {row} has an infinite or NaN value: correct it")]
     NotFinite {
         /// First such row.
         row: usize,
     },
     /// A label is not a 32-bit integer.
-    #[error("row {row} has {value}, and an integer of 32 bits is needed")]
+    #[error("row {row} has {value}, not a 32-bit integer")]
     NoLabel {
         /// First such row.
         row: usize,

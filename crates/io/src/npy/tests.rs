@@ -88,8 +88,8 @@ fn rows_that_are_wrong_are_named() {
     write_array(&mut bytes, &[[0_i32, 1], [2, 5], [-1, 0]]).unwrap();
     let arrays = Arrays::of(&[("a.npy", &bytes)]);
     let named = |count| arrays.indices::<2>("a", ("points.npy", count)).expect_err("a fault").to_string();
-    assert_eq!(named(5), "a.npy: row 1 names 5, but points.npy has 5 rows, the first is 0");
-    assert_eq!(named(6), "a.npy: row 2 names -1, but points.npy has 6 rows, the first is 0");
+    assert_eq!(named(5), "a.npy: row 1 refers to 5, but points.npy has 5 rows, numbered from 0");
+    assert_eq!(named(6), "a.npy: row 2 refers to -1, but points.npy has 6 rows, numbered from 0");
     bytes.clear();
     write_array(&mut bytes, &[[0.0, 1.0, 2.0], [0.0, f64::NAN, 1.0]]).unwrap();
     let arrays = Arrays::of(&[("p.npy", &bytes)]);

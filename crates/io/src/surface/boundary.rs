@@ -45,7 +45,7 @@ impl BoundaryFormat {
     /// # Errors
     /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, SurfaceFileError> {
-        let (kind, known) = ("format of surfaces that is known here", ".stl, .ply, .obj, .off, .glb, .3mf, .vtp");
+        let (kind, known) = ("surface", ".stl, .ply, .obj, .off, .glb, .3mf, .vtp");
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
         by_extension(path, &EXTENSIONS).ok_or_else(unknown)
     }

@@ -27,8 +27,8 @@ pub struct SurfaceContent {
 pub enum SurfaceNote {
     /// The file is longer than its triangle count implies.
     #[error(
-        "what follows the last of its {triangles} triangles is not read: {bytes} bytes{}",
-        if *bytes < RECORD { "" } else { ", room for more triangles, so that its count may be wrong" }
+        "{bytes} bytes after the last of {triangles} triangles ignored{}",
+        if *bytes < RECORD { "" } else { ", enough for more triangles: the count may be wrong" }
     )]
     Surplus {
         /// Number of surplus bytes.

@@ -19,7 +19,7 @@ pub enum SurfaceFault {
     #[error(transparent)]
     Npy(#[from] NpyError),
     /// A face has too few corners, or too many in a triangle-only format.
-    #[error("{place}: face {face} has {corners} corners, which make no triangle: correct or remove it")]
+    #[error("{place}: face {face} has {corners} corners, not a polygon: correct or remove it")]
     NotATriangle {
         /// The first such face.
         face: usize,
@@ -40,7 +40,7 @@ pub enum SurfaceFault {
         fault: FacetError,
     },
     /// A face refers to a missing point.
-    #[error("{place}: face {face} names the point {index}, but there are {points} points, the first is {first}")]
+    #[error("{place}: face {face} refers to point {index}, but the file has {points} points, numbered from {first}")]
     BadIndex {
         /// The first such face.
         face: usize,
@@ -54,7 +54,7 @@ pub enum SurfaceFault {
         place: Place,
     },
     /// A coordinate of a binary file is infinite or NaN.
-    #[error("byte {byte}: point {point} has a coordinate that is infinite or not a number: correct it")]
+    #[error("byte {byte}: point {point} has an infinite or NaN coordinate: correct it")]
     NotFinite {
         /// The first such point.
         point: usize,
@@ -62,7 +62,7 @@ pub enum SurfaceFault {
         byte: usize,
     },
     /// The variant of the format is not supported.
-    #[error("{place}: '{found}' is a variant that is not read: save it as {instead}")]
+    #[error("{place}: unsupported variant '{found}': save it as {instead}")]
     Variant {
         /// Text found.
         found: String,
@@ -72,7 +72,7 @@ pub enum SurfaceFault {
         instead: &'static str,
     },
     /// A required word is missing.
-    #[error("{place}: '{found}' stands where {expected} has to be: correct it, or give the file its right extension")]
+    #[error("{place}: expected {expected}, found '{found}': correct it, or use the extension of the format")]
     Unexpected {
         /// Text found.
         found: String,
@@ -99,7 +99,7 @@ pub enum SurfaceFault {
         found: u64,
     },
     /// The file has no faces.
-    #[error("there is no face in it, only {points} points: a surface is needed")]
+    #[error("the file has no faces, only {points} points: give a surface")]
     NoFaces {
         /// Number of points.
         points: usize,

@@ -32,7 +32,7 @@ impl SurfaceFormat {
     /// # Errors
     /// `UnknownFormat` if no format has the extension.
     pub fn of(path: &Path) -> Result<Self, SurfaceFileError> {
-        let (kind, known) = ("format that is known here", ".off, .ply, .stl, .obj");
+        let (kind, known) = ("surface", ".off, .ply, .stl, .obj");
         let unknown = || FileError::UnknownFormat { path: path.to_path_buf(), kind, known };
         by_extension(path, &EXTENSIONS).ok_or_else(unknown)
     }

@@ -14,7 +14,7 @@ pub enum TetgenFault {
     #[error(transparent)]
     Text(#[from] TextFault),
     /// The points are not three-dimensional.
-    #[error("line {line}: the points have the dimension {dimension}; it has to be 3")]
+    #[error("line {line}: the points have dimension {dimension}, expected 3")]
     Dimension { line: usize, dimension: i64 },
     /// The points are not numbered consecutively from 0 or 1.
     #[error(
@@ -28,7 +28,9 @@ pub enum TetgenFault {
         expected: i64,
     },
     /// A polygon refers to a missing point.
-    #[error("line {line}: facet {facet} names the point {index}, but there are {points} points, the first is {first}")]
+    #[error(
+        "line {line}: facet {facet} refers to point {index}, but the file has {points} points, numbered from {first}"
+    )]
     BadIndex {
         line: usize,
         facet: usize,
@@ -40,10 +42,12 @@ pub enum TetgenFault {
         first: u32,
     },
     /// A polygon has no corners, or a facet no polygons.
-    #[error("line {line}: facet {facet} has nothing in it: remove it")]
+    #[error("line {line}: facet {facet} is empty: remove it")]
     EmptyFacet { line: usize, facet: usize },
     /// A tetrahedron or face of a mesh refers to a missing point.
-    #[error("line {line}: {kind} {cell} names the point {index}, but there are {points} points, the first is {first}")]
+    #[error(
+        "line {line}: {kind} {cell} refers to point {index}, but the file has {points} points, numbered from {first}"
+    )]
     BadCell {
         line: usize,
         /// Kind of the cell.
@@ -58,13 +62,13 @@ pub enum TetgenFault {
         first: u32,
     },
     /// The tetrahedra have additional points besides their corners.
-    #[error("line {line}: tetrahedra have {corners} points; only those of 4 are read: write the mesh without -o2")]
+    #[error("line {line}: tetrahedra with {corners} points are not supported: write the mesh without -o2")]
     Order {
         line: usize,
         /// Number of points per tetrahedron.
         corners: i64,
     },
     /// There are no points, neither in this file nor in the `.node` file.
-    #[error("there are no points in it: is it the right file?")]
+    #[error("the file has no points: is it the right file?")]
     NoPoints,
 }

@@ -47,7 +47,7 @@ impl Nodes {
 pub fn read_nodes(path: &Path) -> Result<Nodes, TetgenFileError> {
     if extension(path) != "node" {
         let path = path.to_path_buf();
-        return Err(FileError::UnknownFormat { path, kind: "format that is known here", known: ".node" });
+        return Err(FileError::UnknownFormat { path, kind: "node", known: ".node" });
     }
     read_nodes_as(path)
 }

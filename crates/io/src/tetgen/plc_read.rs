@@ -18,7 +18,7 @@ pub fn read_plc(path: &Path) -> Result<Plc, TetgenFileError> {
         "poly" => PlcFormat::Poly,
         "smesh" => PlcFormat::Smesh,
         _ => {
-            let (path, kind) = (path.to_path_buf(), "format that is known here");
+            let (path, kind) = (path.to_path_buf(), "facet");
             return Err(FileError::UnknownFormat { path, kind, known: ".poly, .smesh" });
         }
     };

@@ -34,9 +34,9 @@ pub enum MeshFault {
     #[error(transparent)]
     Npy(#[from] NpyError),
     /// The format can be written only.
-    #[error("cases of solvers are written, not read: name the same mesh as .vtu or .msh")]
+    #[error("solver cases can be written but not read: give the mesh as .vtu or .msh")]
     NotRead,
     /// The format consists of several files.
-    #[error("a mesh of this format is several files: name the path of its .ele or .pvtu file, or of its folder .npyd")]
+    #[error("this format has several files: give the path of the .ele or .pvtu file, or of the .npyd folder")]
     SeveralFiles,
 }

@@ -73,7 +73,7 @@ impl MeshFormat {
     pub fn of(path: &Path) -> Result<Self, MeshFileError> {
         by_extension(path, &EXTENSIONS).ok_or_else(|| FileError::UnknownFormat {
             path: path.to_path_buf(),
-            kind: "known mesh format",
+            kind: "mesh",
             known: ".vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .npyd, .ele",
         })
     }

@@ -31,7 +31,7 @@ impl InPieces<'_> {
     }
 }
 
-/// What of a list is there: it may be empty.
+/// Range of a list that may be empty.
 fn known(values: &[i32], range: Range<usize>) -> Cow<'_, [i32]> {
     values.get(range).unwrap_or_default().into()
 }

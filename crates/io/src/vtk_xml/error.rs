@@ -7,13 +7,13 @@ use crate::xml::XmlFault;
 #[non_exhaustive]
 pub enum VtkError {
     /// The file has no element.
-    #[error("there is no XML element in the file; is it a VTK file (.vtp, .vtu)?")]
+    #[error("the file has no XML element; is it a VTK file (.vtp, .vtu)?")]
     Empty,
     /// The file is no XML.
     #[error(transparent)]
     Xml(#[from] XmlFault),
     /// The nesting depth exceeds the limit.
-    #[error("elements are nested deeper than any VTK file has them: save the file again")]
+    #[error("elements are nested too deeply: save the file again")]
     TooDeep,
     /// The file is truncated.
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
@@ -25,7 +25,7 @@ pub enum VtkError {
         root: String,
     },
     /// The file type is wrong.
-    #[error("a VTK file of type '{found}', but '{wanted}' is needed here: name another file, or save this one as such")]
+    #[error("expected a VTK file of type '{wanted}', found '{found}': give another file, or convert this one")]
     WrongFileType {
         /// Text that was found.
         found: String,
@@ -49,10 +49,10 @@ pub enum VtkError {
         value: String,
     },
     /// `AppendedData` is neither raw nor base64.
-    #[error("the encoding of <AppendedData> is neither raw nor base64: save the file with one of these")]
+    #[error("unsupported encoding of <AppendedData>: use raw or base64")]
     BadAppendedData,
     /// The type of an array is unknown.
-    #[error("array '{array}' has the unknown type '{kind}': save it as Float64 or Int64")]
+    #[error("array '{array}' has the unsupported type '{kind}': use Float64 or Int64")]
     UnknownType {
         /// Array name.
         array: String,
@@ -60,7 +60,7 @@ pub enum VtkError {
         kind: String,
     },
     /// The format of an array is unknown.
-    #[error("array '{array}' has the unknown format '{format}': save it as ascii, binary or appended")]
+    #[error("array '{array}' has the unsupported format '{format}': use ascii, binary or appended")]
     UnknownFormat {
         /// Array name.
         array: String,
@@ -69,13 +69,13 @@ pub enum VtkError {
         format: String,
     },
     /// The offset of an array is missing, not a number, or beyond the appended data.
-    #[error("the data of array '{array}' lies beyond the end of the file: write or copy it again")]
+    #[error("the data of array '{array}' lies beyond the end of the file: copy it again")]
     BadOffset {
         /// Array name.
         array: String,
     },
     /// The bytes of an array are truncated.
-    #[error("the data of array '{array}' is cut short: write or copy it again")]
+    #[error("the data of array '{array}' is truncated: copy the file again")]
     ArrayCutShort {
         /// Array name.
         array: String,
@@ -91,13 +91,13 @@ pub enum VtkError {
         text: String,
     },
     /// Base64 text is malformed.
-    #[error("the data of array '{array}' is not well-formed base64: write or copy it again")]
+    #[error("the data of array '{array}' is not valid base64: copy the file again")]
     BadBase64 {
         /// Array name.
         array: String,
     },
     /// The decompressed length of a block is wrong.
-    #[error("block {block} of the compressed data of array '{array}' is damaged: write or copy it again")]
+    #[error("compressed block {block} of array '{array}' is damaged: copy the file again")]
     BadZlib {
         /// Array name.
         array: String,
@@ -105,7 +105,7 @@ pub enum VtkError {
         block: usize,
     },
     /// The array size is not a multiple of the value or tuple size.
-    #[error("array '{array}' does not hold a whole number of values of {size} bytes: write or copy it again")]
+    #[error("the length of array '{array}' is not a multiple of {size} bytes: copy the file again")]
     Ragged {
         /// Array name.
         array: String,

@@ -264,8 +264,8 @@ impl CapShape {
     }
 }
 
-/// True if triangles form one disc: connected by edges, every edge in one triangle or in two with opposite directions,
-/// one boundary loop, Euler number 1.
+/// True if triangles form one disc: connected by edges, one boundary loop, Euler number 1. Every edge is in one triangle,
+/// or in two with opposite directions.
 pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     let Ok(count) = u32::try_from(triangles.len()) else { return false };
     let mut directed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());

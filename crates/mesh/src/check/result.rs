@@ -107,29 +107,84 @@ impl Line {
     pub fn statement(self) -> &'static str {
         match self {
             Self::NotEmpty => "the mesh has tetrahedra",
-            Self::FinitePoints => "coordinates are finite",
-            Self::IndicesInRange => "tetrahedra name points that exist",
-            Self::NoRepeatedVertex => "the vertices of a tetrahedron differ",
-            Self::NoDuplicateTets => "no tetrahedron is there twice",
-            Self::PositiveTets => "every tetrahedron is positive",
-            Self::FacesSharedByTwo => "a face belongs to at most two tetrahedra",
-            Self::OppositeSides => "two tetrahedra lie on opposite sides of their face",
-            Self::NoDuplicatePoints => "no point is there twice",
-            Self::NoUnusedPoints => "every point is used",
-            Self::BoundaryEdges => "the boundary is closed: every edge in two faces",
-            Self::BoundaryFans => "the boundary faces round a vertex form one fan",
-            Self::NoSelfIntersection => "the boundary does not meet itself",
-            Self::Components => "components as expected",
-            Self::Loops => "loops (genus) as expected",
-            Self::LabelsMatchBoundary => "the labelled triangles are the boundary",
-            Self::WallOrCap => "every boundary face is wall or cap",
+            Self::FinitePoints => "all coordinates are finite",
+            Self::IndicesInRange => "all vertex indices are in range",
+            Self::NoRepeatedVertex => "no tetrahedron has a repeated vertex",
+            Self::NoDuplicateTets => "no duplicate tetrahedra",
+            Self::PositiveTets => "every tetrahedron has positive volume",
+            Self::FacesSharedByTwo => "every face belongs to at most two tetrahedra",
+            Self::OppositeSides => "tetrahedra with a common face lie on opposite sides of it",
+            Self::NoDuplicatePoints => "no duplicate points",
+            Self::NoUnusedPoints => "no unused points",
+            Self::BoundaryEdges => "the boundary is closed",
+            Self::BoundaryFans => "the boundary is manifold at every vertex",
+            Self::NoSelfIntersection => "the boundary does not intersect itself",
+            Self::Components => "the number of components is as expected",
+            Self::Loops => "the number of loops (genus) is as expected",
+            Self::LabelsMatchBoundary => "the labelled triangles are the boundary faces",
+            Self::WallOrCap => "every boundary face belongs to the wall or to a cap",
             Self::OwnPatch => "every cap has its own patch",
-            Self::CapPerTerminal => "every terminal has its cap",
-            Self::CapDisc => "every cap is one disc",
-            Self::CapFlat => "caps are flat (1e-9 r)",
-            Self::CapCentred => "caps are centred on their node (0.1 r)",
-            Self::CapArea => "caps have their area (5 % of πr²)",
-            Self::CapNormal => "caps face outwards",
+            Self::CapPerTerminal => "every terminal has one cap",
+            Self::CapDisc => "every cap is a disc",
+            Self::CapFlat => "every cap is planar (tolerance 1e-9 r)",
+            Self::CapCentred => "every cap is centred on its node (tolerance 0.1 r)",
+            Self::CapArea => "every cap has the area πr² (tolerance 5 %)",
+            Self::CapNormal => "every cap faces outwards",
+        }
+    }
+
+    /// Statement that is true if the condition fails: for one offender, and for `{}` of them.
+    pub(super) fn violation(self) -> [&'static str; 2] {
+        match self {
+            Self::NotEmpty => ["the mesh has no tetrahedra"; 2],
+            Self::FinitePoints => ["1 point has invalid coordinates", "{} points have invalid coordinates"],
+            Self::IndicesInRange => {
+                ["1 tetrahedron has a vertex index out of range", "{} tetrahedra have a vertex index out of range"]
+            }
+            Self::NoRepeatedVertex => ["1 tetrahedron has a repeated vertex", "{} tetrahedra have a repeated vertex"],
+            Self::NoDuplicateTets => ["1 duplicate tetrahedron", "{} duplicate tetrahedra"],
+            Self::PositiveTets => ["1 tetrahedron is inverted or flat", "{} tetrahedra are inverted or flat"],
+            Self::FacesSharedByTwo => {
+                ["1 face belongs to more than two tetrahedra", "{} faces belong to more than two tetrahedra"]
+            }
+            Self::OppositeSides => [
+                "1 pair of tetrahedra lies on one side of the common face",
+                "{} pairs of tetrahedra lie on one side of the common face",
+            ],
+            Self::NoDuplicatePoints => ["1 duplicate point", "{} duplicate points"],
+            Self::NoUnusedPoints => ["1 unused point", "{} unused points"],
+            Self::BoundaryEdges => ["the boundary is not closed at 1 edge", "the boundary is not closed at {} edges"],
+            Self::BoundaryFans => {
+                ["the boundary is not manifold at 1 vertex", "the boundary is not manifold at {} vertices"]
+            }
+            Self::NoSelfIntersection => {
+                ["the boundary intersects itself at 1 place", "the boundary intersects itself at {} places"]
+            }
+            Self::Components => ["number of components"; 2],
+            Self::Loops => ["number of loops (genus)"; 2],
+            Self::LabelsMatchBoundary => [
+                "the labelled triangles differ from the boundary faces at 1 place",
+                "the labelled triangles differ from the boundary faces at {} places",
+            ],
+            Self::WallOrCap => [
+                "1 boundary face belongs to neither the wall nor a cap",
+                "{} boundary faces belong to neither the wall nor a cap",
+            ],
+            Self::OwnPatch => ["1 patch id or name is not unique", "{} patch ids or names are not unique"],
+            Self::CapPerTerminal => {
+                ["terminals and caps do not match at 1 node", "terminals and caps do not match at {} nodes"]
+            }
+            Self::CapDisc => ["1 cap is not a disc", "{} caps are not discs"],
+            Self::CapFlat => ["1 cap is not planar (tolerance 1e-9 r)", "{} caps are not planar (tolerance 1e-9 r)"],
+            Self::CapCentred => [
+                "1 cap is not centred on its node (tolerance 0.1 r)",
+                "{} caps are not centred on their nodes (tolerance 0.1 r)",
+            ],
+            Self::CapArea => [
+                "the area of 1 cap differs from πr² by more than 5 %",
+                "the areas of {} caps differ from πr² by more than 5 %",
+            ],
+            Self::CapNormal => ["1 cap does not face outwards", "{} caps do not face outwards"],
         }
     }
 }

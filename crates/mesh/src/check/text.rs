@@ -1,7 +1,7 @@
 //! Text form of a check's result; its JSON form is `CheckReport` itself.
 
 use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
-use crate::units::{digits, grouped, place};
+use crate::units::{counted, digits, grouped, place, tetrahedra};
 use std::fmt::{self, Write as _};
 
 /// Maximum offenders per condition in a summary.
@@ -21,35 +21,35 @@ impl fmt::Display for CheckReport {
 /// Sizes of a mesh.
 pub fn sizes(check: &CheckReport) -> String {
     let counts = &check.counts;
-    let tets = if counts.tets > 0 { format!("{} tetrahedra, ", grouped(counts.tets)) } else { String::new() };
-    let [points, faces] = [counts.points, counts.boundary_faces].map(grouped);
+    let tets = if counts.tets > 0 { tetrahedra(counts.tets) + ", " } else { String::new() };
+    let (points, faces) = (counted(counts.points, "point"), counted(counts.boundary_faces, "boundary face"));
     let components = match counts.components {
         1 => String::new(),
-        n => format!(", {} components", grouped(n)),
+        n => format!(", {}", counted(n, "component")),
     };
-    let (caps, volume) = (grouped(counts.caps), digits(counts.volume));
-    format!("{tets}{points} points, {faces} boundary faces, {caps} inlets and outlets{components}, volume {volume}")
+    let (caps, volume) = (counted(counts.caps, "cap"), digits(counts.volume));
+    format!("{tets}{points}, {faces}, {caps}{components}, volume {volume}")
 }
 
 /// Quality of the tetrahedra.
 pub fn shape(check: &CheckReport) -> Option<String> {
     let q = check.quality.as_ref()?;
     let angles = format!("dihedral angles {:.0}° to {:.0}°", q.dihedral_min, q.dihedral_max);
-    Some(format!("radius ratio {:.2} in the mean, {:.2} at least; {angles}", q.mean, q.min))
+    Some(format!("radius ratio mean {:.2}, min {:.2}; {angles}", q.mean, q.min))
 }
 
 /// Number of conditions that hold. `listed` tells if they are listed elsewhere.
 pub fn tally(check: &CheckReport, listed: bool) -> String {
     let (all, failed) = (check.lines.len(), check.failed().count());
     let unchecked = check.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
-    let unlooked = match unchecked {
+    let skipped = match unchecked {
         0 => String::new(),
-        n => format!(", {n} could not be checked"),
+        n => format!(", {n} skipped"),
     };
     let hint = if listed { "" } else { " (-v lists them)" };
     match failed + unchecked {
         0 => format!("all {all} conditions hold{hint}"),
-        other => format!("{} of {all} conditions hold{unlooked}{hint}", all - other),
+        other => format!("{} of {all} conditions hold{skipped}{hint}", all - other),
     }
 }
 
@@ -58,7 +58,7 @@ pub fn faults(check: &CheckReport, hint: &str) -> String {
     let mut out = String::new();
     for failed in check.failed() {
         // Writing to a string cannot fail.
-        let _ = writeln!(out, "FAIL {}: {}", failed.line.statement(), extent(failed));
+        let _ = writeln!(out, "FAIL {}", violation(failed));
         let shown = failed.offenders.len().min(SPELT_OUT);
         for offender in &failed.offenders[..shown] {
             let _ = writeln!(out, "         {}", describe(offender));
@@ -76,7 +76,7 @@ pub fn faults(check: &CheckReport, hint: &str) -> String {
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Valid => "valid",
-        Verdict::NoFaultFound => "no fault found, but not every line could be checked",
+        Verdict::NoFaultFound => "no fault found, but some conditions were skipped",
         Verdict::Invalid => "NOT valid",
     }
 }
@@ -88,8 +88,8 @@ pub fn conditions(check: &CheckReport) -> String {
         let statement = line.line.statement();
         let _ = match line.outcome {
             Outcome::Pass => writeln!(out, "  ok   {statement}"),
-            Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: not checked, {}", reason(why)),
-            Outcome::Fail => writeln!(out, "  FAIL {statement}: {}", extent(line)),
+            Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: skipped, because {}", reason(why)),
+            Outcome::Fail => writeln!(out, "  FAIL {}", violation(line)),
         };
         for offender in &line.offenders {
             let _ = writeln!(out, "         {}", describe(offender));
@@ -102,21 +102,23 @@ pub fn conditions(check: &CheckReport) -> String {
     out
 }
 
-/// Returns why a line was skipped.
+/// Reason why a condition was skipped, to follow 'because'.
 pub fn reason(why: Skipped) -> String {
     match why {
         Skipped::NoLabels => "the boundary has no labels".into(),
-        Skipped::NoExpectation => "the file does not say what to expect".into(),
-        Skipped::NoCaps => "the labels do not say which caps they are".into(),
-        Skipped::Because(line) => format!("because this fails: {}", line.statement()),
+        Skipped::NoExpectation => "the file does not contain the expected loops and terminals".into(),
+        Skipped::NoCaps => "the labels do not identify the caps".into(),
+        Skipped::Because(line) => format!("the condition '{}' failed", line.statement()),
     }
 }
 
-/// Number of offenders, or the expected and found values.
-pub fn extent(result: &LineResult) -> String {
+/// Statement about a failed condition, with the number of offenders or the expected and found values.
+pub fn violation(result: &LineResult) -> String {
+    let [one, many] = result.line.violation();
     match (&result.expected, &result.found) {
-        (Some(expected), Some(found)) => format!("expected {}, found {}", list(expected), list(found)),
-        _ => format!("{} found", grouped(result.count as usize)),
+        (Some(expected), Some(found)) => format!("{many}: expected {}, found {}", list(expected), list(found)),
+        _ if result.count == 1 => one.to_owned(),
+        _ => many.replace("{}", &grouped(result.count as usize)),
     }
 }
 
@@ -162,10 +164,10 @@ mod tests {
     #[test]
     fn a_sound_mesh_without_labels() {
         let text = text_of(&cube_lattice(2));
-        assert!(text.contains("  ok   every tetrahedron is positive\n"));
-        assert!(text.contains("  -    caps face outwards: not checked, the boundary has no labels\n"));
-        assert!(text.ends_with("no fault found, but not every line could be checked\n"));
-        assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 inlets and outlets, volume 1.0000"));
+        assert!(text.contains("  ok   every tetrahedron has positive volume\n"));
+        assert!(text.contains("  -    every cap faces outwards: skipped, because the boundary has no labels\n"));
+        assert!(text.ends_with("no fault found, but some conditions were skipped\n"));
+        assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 1.0000"));
     }
 
     #[test]
@@ -176,15 +178,15 @@ mod tests {
             t.swap(0, 1);
         }
         let text = text_of(&mesh);
-        assert!(text.contains("  FAIL every tetrahedron is positive: 16 found\n         tetrahedron 3 at "));
+        assert!(text.contains("  FAIL 16 tetrahedra are inverted or flat\n         tetrahedron 3 at "));
         assert!(text.contains("         and 6 more\n") && text.ends_with("NOT valid\n"));
         mesh = cube_lattice(1);
         let other = mesh.clone();
         mesh.points.extend(other.points.iter().map(|p| p + crate::geometry::Vec3::repeat(0.5)));
         mesh.tets.extend(other.tets.iter().map(|t| t.map(|v| v + 8)));
         let text = text_of(&mesh);
-        assert!(text.contains("  FAIL components as expected: expected 1, found 2\n"));
-        assert!(text.contains("  FAIL loops (genus) as expected: expected 0, found 0 0\n"));
+        assert!(text.contains("  FAIL number of components: expected 1, found 2\n"));
+        assert!(text.contains("  FAIL number of loops (genus): expected 0, found 0 0\n"));
         assert!(text.contains("         faces of points ") && text.contains(" and "));
     }
 }

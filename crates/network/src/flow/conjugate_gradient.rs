@@ -31,8 +31,8 @@ const SWEEPS: usize = 20;
 /// The iteration ended above the accepted residual.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "the flow through the network was not found: inflow and outflow of a node differ by {residual:.1e} of the total inflow \
-     after {iterations} iterations, allowed are {ACCEPTED:.0e}; look for vessels whose radius is wrong by orders of magnitude"
+    "the flow solver did not converge: residual {residual:.1e} of the total inflow after {iterations} iterations \
+     (tolerance {ACCEPTED:.0e}); check the radii of the vessels"
 )]
 pub struct NotConverged {
     /// Largest residual at a node, as a share of the total inflow.

@@ -74,32 +74,32 @@ anastomesh_mesh::setters!(GenerateParams {
 #[non_exhaustive]
 pub enum GenerateError {
     /// The number of terminals is too small for a tree, or exceeds the node ids.
-    #[error("{terminals} terminals: a tree has 2 to {MOST_TERMINALS}")]
+    #[error("{terminals} terminals: give 2 to {MOST_TERMINALS}")]
     BadCount {
         /// Requested number.
         terminals: u32,
     },
     /// The terminal radius is out of range.
-    #[error("terminal radius {radius}: from {LEAST_RADIUS:e} to {LARGEST_RADIUS:e} µm is possible")]
+    #[error("terminal radius {radius}: give {LEAST_RADIUS:e} to {LARGEST_RADIUS:e} µm")]
     BadRadius {
         /// Requested radius, µm.
         radius: f64,
     },
     /// The exponent is out of range.
-    #[error("exponent {exponent}: Murray's law takes 3; from 1.5 to 10 is possible")]
+    #[error("exponent {exponent}: give 1.5 to 10 (Murray's law: 3)")]
     BadExponent {
         /// Requested exponent.
         exponent: f64,
     },
     /// The size is out of range.
-    #[error("size {size} µm: it must be above 0 and at most {LARGEST_SIZE:e} µm")]
+    #[error("size {size} µm: give a size above 0 and at most {LARGEST_SIZE:e} µm")]
     BadSize {
         /// Longest extent, µm.
         size: f64,
     },
     /// The root would fill the organ.
     #[error(
-        "a root of radius {root:.0} µm does not fit into {size:.0} µm: take a larger exponent or size, or thinner terminals"
+        "a root of radius {root:.0} µm does not fit into {size:.0} µm: give a larger exponent or size, or thinner terminals"
     )]
     TooThick {
         /// Root radius by Murray's law, µm.
@@ -109,8 +109,7 @@ pub enum GenerateError {
     },
     /// The terminals would be too close for vessels between them.
     #[error(
-        "{terminals} terminals do not fit into {size:.0} µm: they would be closer to each other than {CLOSEST} radii; a \
-         size of {least:.0} µm holds them"
+        "{terminals} terminals do not fit into {size:.0} µm: they would be closer than {CLOSEST} radii; give a size of at least {least:.0} µm"
     )]
     TooDense {
         /// Longest extent, µm.
@@ -122,8 +121,7 @@ pub enum GenerateError {
     },
     /// The capillaries are too thick for their length.
     #[error(
-        "capillaries of radius {radius} and length {length} µm: the radius must be above 0, and the length at least twelve \
-         times as large"
+        "capillaries of radius {radius} and length {length} µm: give a positive radius, and a length of at least 12 radii"
     )]
     BadBed {
         /// Mean radius, µm.
@@ -132,10 +130,10 @@ pub enum GenerateError {
         length: f64,
     },
     /// A capillary bed was requested in a kidney.
-    #[error("capillaries fill a piece of tissue evenly: choose the organ ellipsoid")]
+    #[error("capillaries need the organ ellipsoid")]
     BedOfKidney,
     /// The organ could not be filled.
-    #[error("only {placed} of {terminals} terminals found a place: give a larger size, thinner terminals or fewer")]
+    #[error("only {placed} of {terminals} terminals were placed: give a larger size, or thinner or fewer terminals")]
     NoRoom {
         /// Terminals placed.
         placed: u32,

@@ -1,7 +1,7 @@
 //! Preparation of measured networks: one graph with one line per vessel.
 //!
-//! Input networks have typical defects: vessels drawn several times (one line from the inlet to each outlet), zero
-//! radii, and points a hundredth of a radius apart. Others are segmentation spurs and adjacent branch points in one
+//! Input networks have typical defects: vessels drawn several times, as lines from the inlet to each outlet; zero
+//! radii; points 0.01 radii apart. Others are segmentation spurs and adjacent branch points in one
 //! lumen. Each defect has a cure with its own switch and a list of its changes. No cure moves a remaining axis beyond
 //! its tolerance.
 

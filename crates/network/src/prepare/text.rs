@@ -1,64 +1,68 @@
-//! Report of the cures as text for people.
+//! Text report of the cures.
 
 use std::fmt::Write as _;
 
 use super::{PrepareReport, RadiusDefect, Size, SpurReason, TouchedBy, TouchingTip};
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, digits, grouped};
 
-/// A line of the table of sizes.
+/// Row of the table of sizes.
 type Row = (&'static str, fn(&Size) -> usize);
 
-/// Cases of one cure that the long text lists.
+/// Maximum number of cases of one cure in the long text.
 const LISTED: usize = 20;
-/// Cases of one cure that the short text lists.
+/// Maximum number of cases of one cure in the short text.
 const SPELT_OUT: usize = 3;
 
 impl PrepareReport {
-    /// Text for people: up to 3 cases of each cure; with `all`, up to 20 and a table of sizes.
+    /// Text report: up to 3 cases of each cure; with `all`, up to 20 and a table of sizes.
     pub fn text(&self, all: bool) -> String {
         let mut out = Lists { text: String::new(), listed: if all { LISTED } else { SPELT_OUT } };
         let filled = self.radii.iter().map(|r| {
-            let was = r.given.map_or_else(|| "no number".into(), |g| format!("{g:.4}"));
-            let why =
-                if r.fault == RadiusDefect::Absurd { " (its neighbours' are ten times more or less)" } else { "" };
-            format!("{}: {was}, now {:.4}{why}", r.node, r.filled)
+            let was = r.given.map_or_else(|| "missing".into(), |g| format!("{g:.4}"));
+            let why = if r.fault == RadiusDefect::Absurd { " (differs tenfold from its neighbours)" } else { "" };
+            format!("node {}: {was}, now {:.4}{why}", r.node, r.filled)
         });
-        out.list("radii filled from neighbours (--keep-radii)", filled);
-        for (count, what) in self.cleaned.counts() {
-            let _ = writeln!(out.text, "{} {what}", grouped(count));
+        out.list(["radius", "radii"], "interpolated from neighbours (--keep-radii)", filled);
+        for change in self.cleaned.changes() {
+            let _ = writeln!(out.text, "{change}");
         }
         merged(self, &mut out);
         let spurs = self.spurs.iter().map(|s| {
             let why = match s.reason {
-                SpurReason::Short => "no longer than its vessel's radius",
-                SpurReason::Inside => "its tip lies within its vessel",
+                SpurReason::Short => "not longer than the radius of its vessel",
+                SpurReason::Inside => "the tip lies inside its vessel",
             };
-            format!("{} from {}: length {:.4}, radius {:.4}: {why}", s.tip, s.from, s.length, s.radius)
+            format!("tip {} from node {}: length {:.4}, radius {:.4}: {why}", s.tip, s.from, s.length, s.radius)
         });
-        out.list("spurs taken off (--keep-spurs)", spurs);
-        let joined = self
-            .joined
-            .nodes
-            .iter()
-            .map(|j| format!("{} into {}: {:.4} apart, radius {:.4}", j.node, j.into, j.distance, j.radius));
-        out.list("branch points joined within one lumen (--keep-joints)", joined);
+        out.list(["spur", "spurs"], "removed (--keep-spurs)", spurs);
+        let joined = self.joined.nodes.iter().map(|j| {
+            format!("node {} into node {}: distance {:.4}, radius {:.4}", j.node, j.into, j.distance, j.radius)
+        });
+        out.list(["bifurcation", "bifurcations"], "joined within one lumen (--keep-joints)", joined);
         let loops =
-            self.joined.loops.iter().map(|l| format!("{} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
-        out.list("loops closed within their own lumen (--keep-joints)", loops);
+            self.joined.loops.iter().map(|l| format!("nodes {} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
+        out.list(["loop", "loops"], "closed within one lumen (--keep-joints)", loops);
         let short = self.short_tips.iter().map(|t| {
-            let done = if t.put_out { "put out" } else { "taken off, as it is too short by far" };
-            format!("{} from {}: length {:.4}, its cap is clear at {:.4}: {done}", t.tip, t.from, t.length, t.needed)
+            let needed = digits(t.needed);
+            let done = if t.put_out {
+                format!("extended to length {needed} so that its cap clears other vessels")
+            } else {
+                format!("removed, as its cap needs length {needed}")
+            };
+            format!("tip {} from node {}: length {}: {done}", t.tip, t.from, digits(t.length))
         });
-        out.list("tips too close to their branch point for a cap (--keep-short-tips)", short);
+        out.list(["tip", "tips"], "too close to a bifurcation for a cap (--keep-short-tips)", short);
         out.touching(&self.touching);
-        let islands = self.islands.iter().map(|i| format!("at {}: {} nodes, length {:.4}", i.node, i.nodes, i.length));
-        out.list("islands dropped (--drop-islands)", islands);
+        let islands = self
+            .islands
+            .iter()
+            .map(|i| format!("at node {}: {}, length {:.4}", i.node, counted(i.nodes, "node"), i.length));
+        out.list(["component", "components"], "removed (--drop-islands)", islands);
         let r = &self.resample;
         if r.before > 0 {
             let _ = writeln!(
                 out.text,
-                "resampled: {} nodes to {}; the axis moved by {:.4} radii at most, radii changed by {:.2} % at most \
-                 (--keep-points)",
+                "resampled from {} to {} nodes; max axis error {:.4} radii, max radius error {:.2} % (--keep-points)",
                 grouped(r.before),
                 grouped(r.after),
                 r.furthest,
@@ -72,14 +76,14 @@ impl PrepareReport {
     }
 }
 
-/// Text for people on tips that end in or on another vessel.
+/// Text on tips that touch another vessel.
 pub fn touching_text(tips: &[TouchingTip]) -> String {
     let mut out = Lists { text: String::new(), listed: SPELT_OUT };
     out.touching(tips);
     out.text
 }
 
-/// Cures and their cases, of which so many are spelt out.
+/// Text of cures with their first cases.
 struct Lists {
     text: String,
     listed: usize,
@@ -87,13 +91,13 @@ struct Lists {
 
 impl Lists {
     /// A heading with the number of cases, and the first of them.
-    fn list(&mut self, what: &str, cases: impl ExactSizeIterator<Item = String>) {
+    fn list(&mut self, [one, many]: [&str; 2], what: &str, cases: impl ExactSizeIterator<Item = String>) {
         let count = cases.len();
         if count == 0 {
             return;
         }
         // Writing to a string cannot fail.
-        let _ = writeln!(self.text, "{} {what}", grouped(count));
+        let _ = writeln!(self.text, "{} {} {what}", grouped(count), if count == 1 { one } else { many });
         for case in cases.take(self.listed) {
             let _ = writeln!(self.text, "  {case}");
         }
@@ -106,31 +110,34 @@ impl Lists {
     fn touching(&mut self, tips: &[TouchingTip]) {
         let tips = tips.iter().map(|t| {
             let done = match t.done {
-                TouchedBy::Retracted { by } => format!("drawn back by {by:.4}"),
+                TouchedBy::Retracted { by } => format!("shortened by {by:.4}"),
                 TouchedBy::Joined => "joined".into(),
-                TouchedBy::Removed => "taken off, as no room for a cap is left on its vessel".into(),
-                TouchedBy::Left => "left, as its vessel runs along the other".into(),
+                TouchedBy::Removed => "removed, as its vessel is too short for a cap".into(),
+                TouchedBy::Left => "kept, as its vessel runs along the other".into(),
             };
-            format!("{} at {}-{}: {done}", t.tip, t.with[0], t.with[1])
+            format!("tip {} at edge {}-{}: {done}", t.tip, t.with[0], t.with[1])
         });
-        self.list("tips that end in or on another vessel (--touching)", tips);
+        self.list(["tip", "tips"], "touching another vessel (--touching)", tips);
     }
 }
 
 fn merged(report: &PrepareReport, out: &mut Lists) {
-    let met = report.merge.met.iter().map(|[a, b]| format!("{a} and {b}"));
-    out.list("pairs of tips at one place but for rounding made one (--keep-doubles)", met);
+    let met = report.merge.met.iter().map(|[a, b]| format!("nodes {a} and {b}"));
+    out.list(["pair", "pairs"], "of coincident tips joined (--keep-doubles)", met);
     let stretches = report.merge.merged.iter().map(|m| {
-        let partings: String =
-            m.partings.iter().map(|p| format!("; parts at {}, leaves the tube at {}", p.branches, p.leaves)).collect();
+        let partings: String = m
+            .partings
+            .iter()
+            .map(|p| format!("; leaves at node {}, exits the vessel at node {}", p.branches, p.leaves))
+            .collect();
         format!(
-            "{} to {} ran with {}-{}: length {:.4}, {:.3} radii apart at most{partings}",
+            "nodes {} to {} along edge {}-{}: length {:.4}, max distance {:.3} radii{partings}",
             m.nodes[0], m.nodes[1], m.with[0], m.with[1], m.length, m.apart
         )
     });
-    out.list("stretches that ran together with another line merged (--keep-doubles)", stretches);
+    out.list(["duplicate segment", "duplicate segments"], "merged (--keep-doubles)", stretches);
     if report.merge.gave_up {
-        out.text.push_str("so many lines lie upon each other that not all were looked at\n");
+        out.text.push_str("duplicate search incomplete: too many coincident lines\n");
     }
 }
 

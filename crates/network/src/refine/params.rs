@@ -135,7 +135,7 @@ impl Default for RefineParams {
 #[non_exhaustive]
 pub enum RefineError {
     /// A parameter is out of its range.
-    #[error("refinement: {name} is {value}; it has to be {expected}")]
+    #[error("refinement: {name} is {value}; it must be {expected}")]
     Parameter {
         /// Name of the parameter.
         name: &'static str,

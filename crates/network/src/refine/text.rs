@@ -1,17 +1,17 @@
-//! Report of a refinement as text for people.
+//! Text report of a refinement.
 
 use std::fmt::{self, Write as _};
 
 use super::{Figures, RefineReport, Treatment};
-use anastomesh_mesh::units::grouped;
+use anastomesh_mesh::units::{counted, grouped};
 
 /// Row of the table of figures: its name and its text for one state.
 type Row = (&'static str, fn(&Figures) -> String);
 
-/// Pairs that are listed.
+/// Maximum number of listed pairs.
 const LISTED: usize = 50;
 
-/// A summary and a table of figures for people.
+/// Summary and table of figures.
 impl fmt::Display for RefineReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&text(self))
@@ -24,7 +24,7 @@ fn text(report: &RefineReport) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
-        "nodes: {} to {} ({} split, {} bends put in); edges: {} to {}",
+        "nodes: {} to {} ({} split, {} added in bends); edges: {} to {}",
         report.size_before[0],
         report.size_after[0],
         report.nodes_split,
@@ -34,13 +34,13 @@ fn text(report: &RefineReport) -> String {
     );
     let iterations = report.history.last().map_or(0, |s| s.iteration);
     let best = match report.chosen {
-        Some(iteration) => format!("best after {iteration}"),
-        None => "none as good as the input in what was to be held: nothing was moved".into(),
+        Some(iteration) => format!("best after {}", counted(iteration, "iteration")),
+        None => "no state satisfies --hold: nothing was moved".into(),
     };
     let _ = writeln!(
         out,
-        "moved in {iterations} iterations ({best}): mean {:.4}, median {:.4}, 95 % {:.4}, 99 % {:.4}, furthest {:.4} (a \
-         median radius is {:.4})",
+        "displacement after {} ({best}): mean {:.4}, median {:.4}, 95 % {:.4}, 99 % {:.4}, max {:.4} (median radius {:.4})",
+        counted(iterations, "iteration"),
         d.mean,
         d.median,
         d.p95,
@@ -76,9 +76,9 @@ impl RefineReport {
         let states = [&self.given, &self.split, &self.moved, &self.result];
         let rows: [Row; 13] = [
             ("overlapping pairs", |f| grouped(f.overlaps)),
-            ("  that share a node", |f| grouped(f.beside)),
+            ("  with a common node", |f| grouped(f.beside)),
             ("unconnected pairs", |f| grouped(f.unconnected)),
-            ("  far from each other", |f| grouped(f.far)),
+            ("  distant along vessels", |f| grouped(f.far)),
             ("barrier potential", |f| format!("{:.4e}", f.metrics.barrier)),
             ("shorter than 2 r", |f| percent(f.metrics.shorter_than_2.percent())),
             ("shorter than 2.5 r", |f| percent(f.metrics.shorter_than_2_5.percent())),
@@ -87,7 +87,7 @@ impl RefineReport {
             ("folds under 30 degrees", |f| percent(f.metrics.folds.percent())),
             ("equation 11 met", |f| percent(f.metrics.long_enough.percent())),
             ("equation 12 met", |f| percent(f.metrics.open_enough.percent())),
-            ("inner branches cuttable", |f| percent(f.metrics.cuttable.percent())),
+            ("cuttable inner branches", |f| percent(f.metrics.cuttable.percent())),
         ];
         let row = |(name, value): Row| [vec![name.to_owned()], states.map(value).to_vec()].concat();
         rows.into_iter().map(row).collect()
@@ -98,19 +98,19 @@ impl RefineReport {
         if self.crowded.is_empty() {
             return;
         }
-        let _ = writeln!(
-            out,
-            "{} pairs of terminals are too close to each other for two caps",
-            grouped(self.crowded.len())
-        );
+        let _ = writeln!(out, "{} too close for two caps", counted(self.crowded.len(), "terminal pair"));
         for pair in self.crowded.iter().take(listed) {
             let [a, b] = pair.nodes;
             let done = match (pair.resolved, pair.moved) {
-                (false, _) => "left; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
-                (true, [a, b]) if a + b == 0.0 => "made one".into(),
-                (true, [a, b]) => format!("moved by {a:.4} and {b:.4} (--crowded-terminals keep leaves them)"),
+                (false, _) => "kept; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
+                (true, [a, b]) if a + b == 0.0 => "merged".into(),
+                (true, [a, b]) => format!("moved by {a:.4} and {b:.4} (--crowded-terminals)"),
             };
-            let _ = writeln!(out, "  {a} and {b}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+            let _ = writeln!(
+                out,
+                "  nodes {a} and {b}: distance {:.4}, sum of radii {:.4}: {done}",
+                pair.distance, pair.radii
+            );
         }
         unlisted(self.crowded.len(), listed, out);
     }
@@ -125,24 +125,27 @@ impl RefineReport {
         let lost = if r.volume > 0.0 { 100.0 * r.volume_lost / r.volume } else { 0.0 };
         let _ = writeln!(
             out,
-            "{} pairs overlapped when the nodes had come to rest; {} edges were shrunk ({lost:.4} % of the lumen); {} pairs \
-             overlap still",
-            grouped(r.pairs.len()),
-            grouped(r.shrunk_edges),
-            grouped(r.left)
+            "{} after moving; {} shrunk ({lost:.4} % of the lumen); {} left",
+            counted(r.pairs.len(), "overlapping pair"),
+            counted(r.shrunk_edges, "edge"),
+            counted(r.left, "overlapping pair")
         );
         for pair in r.pairs.iter().take(listed) {
             let [[a, b], [c, d]] = pair.edges;
             let done = match pair.treatment {
                 Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
-                Treatment::Cleared => "parted by what was done about others".into(),
-                Treatment::Fused => "to be meshed together".into(),
+                Treatment::Cleared => "resolved by other changes".into(),
+                Treatment::Fused => "to be meshed as one lumen".into(),
                 Treatment::Left if pair.terminals_too_close => {
-                    "left: their terminals are too close to each other (--crowded-terminals part)".into()
+                    "kept: their terminals are too close (--crowded-terminals part)".into()
                 }
-                Treatment::Left => "left".into(),
+                Treatment::Left => "kept".into(),
             };
-            let _ = writeln!(out, "  {a}-{b} and {c}-{d}: {:.4} apart, radii {:.4}: {done}", pair.distance, pair.radii);
+            let _ = writeln!(
+                out,
+                "  edges {a}-{b} and {c}-{d}: distance {:.4}, sum of radii {:.4}: {done}",
+                pair.distance, pair.radii
+            );
         }
         unlisted(r.pairs.len(), listed, out);
     }
@@ -152,7 +155,7 @@ fn percent(value: f64) -> String {
     format!("{value:.3} %")
 }
 
-/// How many pairs are not spelt out.
+/// Appends the number of pairs that are not listed.
 fn unlisted(count: usize, listed: usize, out: &mut String) {
     if count > listed {
         let _ = writeln!(out, "  and {} more (--json lists all)", grouped(count - listed));

@@ -52,7 +52,7 @@ fn what_cannot_be_is_refused_with_the_limits() {
         (Layers { growth: f64::NAN, ..THREE }, "0.2 to 5"),
         (Layers { thickness: 1.0, ..THREE }, "0.001 to 0.8"),
         (Layers { thickness: 0.0, ..THREE }, "0.001 to 0.8"),
-        (Layers { count: 20, growth: 2.0, ..THREE }, "fewer layers"),
+        (Layers { count: 20, growth: 2.0, ..THREE }, "give fewer or thicker layers"),
     ];
     for (layers, limits) in bad {
         let error = layers.check().expect_err("refused").to_string();

@@ -17,13 +17,13 @@ pub enum AmiraError {
     #[error(transparent)]
     Text(#[from] TextFault),
     /// A declaration is malformed.
-    #[error("line {line}: a declaration such as 'VERTEX {{ float[3] VertexCoordinates }} @1' is needed: correct it")]
+    #[error("line {line}: expected a declaration such as 'VERTEX {{ float[3] VertexCoordinates }} @1': correct it")]
     BadDeclaration {
         /// Line of the file, from 1.
         line: usize,
     },
     /// A data section has no declaration.
-    #[error("line {line}: the data '{mark}' are declared nowhere: correct the declarations at the head")]
+    #[error("line {line}: the data '{mark}' have no declaration: correct the header")]
     Undeclared {
         /// Line of the file, from 1.
         line: usize,
@@ -31,13 +31,13 @@ pub enum AmiraError {
         mark: String,
     },
     /// A required section of a spatial graph is missing.
-    #[error("there is no {what} in the file: is it a spatial graph (HxSpatialGraph)?")]
+    #[error("the file has no {what}: is it a spatial graph (HxSpatialGraph)?")]
     Missing {
         /// Missing or wrong item.
         what: &'static str,
     },
     /// The total point count of the edges differs from the number of points.
-    #[error("edges have {found} points together, but {expected} are there: correct NumEdgePoints")]
+    #[error("edges have {found} points in total, but the file has {expected}: correct NumEdgePoints")]
     PointsDiffer {
         /// Number of points.
         expected: usize,
@@ -45,7 +45,9 @@ pub enum AmiraError {
         found: usize,
     },
     /// An edge refers to a missing vertex.
-    #[error("edge {edge} (from 0) names vertex {vertex}, but there are only {vertices} vertices (from 0): correct it")]
+    #[error(
+        "edge {edge} (from 0) refers to vertex {vertex} (from 0), but the file has {vertices} vertices: correct it"
+    )]
     UnknownVertex {
         /// Edge, from 0.
         edge: usize,
@@ -58,6 +60,6 @@ pub enum AmiraError {
     #[error(transparent)]
     Radius(#[from] RadiusFault),
     /// The number of points exceeds the index range.
-    #[error("there are more points than can be numbered ({})", u32::MAX)]
+    #[error("too many points for 32-bit indices ({})", u32::MAX)]
     TooMany,
 }

@@ -37,14 +37,14 @@ pub enum CsvError {
     },
     /// One of the two tables is missing.
     #[error(
-        "one table alone: nodes and edges are needed, in two files whose names differ by 'nodes' (or 'vertices') and \
-         'edges', or in one file with an empty line between them"
+        "only one table: give nodes and edges in two files named with 'nodes' (or 'vertices') and 'edges', \
+         or in one file separated by an empty line"
     )]
     OneTable,
     /// The columns with the ends of edges are missing.
     #[error(
-        "no two columns say where edges begin and end (source and target, from and to, node1id and node2id, start and \
-         end); there are: {}",
+        "no columns for the ends of edges (source and target, from and to, node1id and node2id, start and end); \
+         columns: {}",
         available.join(", ")
     )]
     NoEnds {

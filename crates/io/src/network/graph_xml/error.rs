@@ -29,7 +29,7 @@ pub enum GraphXmlError {
         attribute: &'static str,
     },
     /// The file ends inside an element.
-    #[error("the file ends inside <{element}>: it was not written or copied completely; write or copy it again")]
+    #[error("the file ends inside <{element}>: it is truncated; copy it again")]
     CutShort {
         /// Innermost open element.
         element: String,

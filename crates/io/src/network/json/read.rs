@@ -10,16 +10,16 @@ use serde_json::{Map, Value as Json};
 #[non_exhaustive]
 pub enum JsonError {
     /// The JSON is malformed.
-    #[error("no well-formed JSON: {0}; correct the file, or copy it again if it was cut short")]
+    #[error("invalid JSON: {0}; correct the file, or copy it again if it is truncated")]
     Json(#[from] serde_json::Error),
     /// A list is missing.
-    #[error("there is no list '{list}' in the outermost object: write the graph as node-link data")]
+    #[error("the outermost object has no list '{list}': write the graph as node-link data")]
     NoList {
         /// Name of the missing list.
         list: &'static str,
     },
     /// An entry of a list is not an object, or lacks a key.
-    #[error("{place}: '{key}' with a word or a number is needed: complete it")]
+    #[error("{place}: '{key}' is missing: give a word or a number")]
     NoKey {
         /// Place in the file.
         place: GraphPlace,

@@ -57,7 +57,7 @@ fn radii_stand_at_nodes_at_edges_or_at_their_ends() {
     let roots = ints(&[[1], [2]]);
     let radius = bytes(&[[1.0], [1.0]]);
     let astray = fault(&[files[0], files[1], ("radii.npy", &radius), ("roots.npy", &roots)]);
-    assert_eq!(astray, "roots.npy: row 1 names 2, but nodes.npy has 2 rows, the first is 0");
+    assert_eq!(astray, "roots.npy: row 1 refers to 2, but nodes.npy has 2 rows, numbered from 0");
 }
 
 #[test]

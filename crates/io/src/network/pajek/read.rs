@@ -9,10 +9,10 @@ use crate::network::graph::{Graph, GraphFault, GraphPlace};
 #[non_exhaustive]
 pub enum PajekError {
     /// There is no vertex section.
-    #[error("there is no line '*Vertices' in the file: is it a Pajek network?")]
+    #[error("the file has no line '*Vertices': is it a Pajek network?")]
     NoVertices,
     /// The section type is not supported, such as a matrix.
-    #[error("line {line}: the section '{section}' cannot be read: save vertices, arcs and edges as lists")]
+    #[error("line {line}: the section '{section}' is not supported: save vertices, arcs and edges as lists")]
     UnknownSection {
         /// Line of the file, from 1.
         line: usize,
@@ -20,7 +20,7 @@ pub enum PajekError {
         section: String,
     },
     /// A line has too few numbers.
-    #[error("line {line}: an edge needs the numbers of two vertices: complete it")]
+    #[error("line {line}: an edge needs two vertex numbers: complete it")]
     TooShort {
         /// Line of the file, from 1.
         line: usize,

@@ -15,7 +15,7 @@ pub enum Sv1dError {
     #[error(transparent)]
     Text(#[from] TextFault),
     /// Two nodes, segments or lists have an equal name.
-    #[error("line {line}: {what} '{name}' is there already: names must differ")]
+    #[error("line {line}: duplicate {what} '{name}': names must differ")]
     Repeated {
         /// Line of the file, from 1.
         line: usize,
@@ -25,7 +25,7 @@ pub enum Sv1dError {
         name: String,
     },
     /// A reference has no target.
-    #[error("line {line}: {what} '{name}' is not in the file: correct it")]
+    #[error("line {line}: unknown {what} '{name}': correct it")]
     Unknown {
         /// Line of the file, from 1.
         line: usize,
@@ -35,7 +35,7 @@ pub enum Sv1dError {
         name: String,
     },
     /// A joint refers to a segment list that is missing or belongs to another joint.
-    #[error("line {line}: there is no list of segments '{name}' for this joint alone: correct it")]
+    #[error("line {line}: the joint has no segment list '{name}' of its own: correct it")]
     NoList {
         /// Line of the file, from 1.
         line: usize,
@@ -43,7 +43,7 @@ pub enum Sv1dError {
         name: String,
     },
     /// An area is not positive.
-    #[error("line {line}: the area {area} cannot be that of a section: it must be above zero")]
+    #[error("line {line}: the area {area} is not positive: correct it")]
     BadArea {
         /// Line of the file, from 1.
         line: usize,
@@ -51,13 +51,13 @@ pub enum Sv1dError {
         area: f64,
     },
     /// There are no segments.
-    #[error("there is no SEGMENT in the file ({nodes} nodes): is it the input of a one-dimensional solver?")]
+    #[error("the file has no SEGMENT ({nodes} nodes): is it the input of a one-dimensional solver?")]
     NoSegments {
         /// Number of nodes.
         nodes: usize,
     },
     /// The number of nodes exceeds the index range.
-    #[error("there are more nodes than can be numbered ({})", u32::MAX)]
+    #[error("too many nodes for 32-bit indices ({})", u32::MAX)]
     TooMany,
 }
 

@@ -1,5 +1,6 @@
 //! Errors of SWC files.
 
+use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::LARGEST;
 
 /// Errors of an SWC file. Lines are numbered from 1.
@@ -7,7 +8,7 @@ use anastomesh_skeleton::LARGEST;
 #[non_exhaustive]
 pub enum SwcError {
     /// A row has too few columns.
-    #[error("line {line} has {found} columns; a row of an SWC file has seven: id, type, x, y, z, radius, parent")]
+    #[error("line {line} has {}, but SWC needs 7: id, type, x, y, z, radius, parent", counted(*found, "column"))]
     TooFewColumns {
         /// Line of the file, from 1.
         line: usize,
@@ -42,7 +43,7 @@ pub enum SwcError {
     },
     /// A radius is zero, negative, infinite or NaN.
     #[error(
-        "line {line}: node {id} has the radius {radius}; radii must be finite and above zero: give it the radius of its vessel"
+        "line {line}: node {id} has the radius {radius}; radii must be finite and positive: give the radius of the vessel"
     )]
     BadRadius {
         /// Line of the file, from 1.
@@ -53,7 +54,7 @@ pub enum SwcError {
         radius: f64,
     },
     /// Two rows have an equal id.
-    #[error("line {line}: node {id} was given in line {first} already; ids must differ")]
+    #[error("line {line}: duplicate node {id}, first defined in line {first}; ids must differ")]
     RepeatedId {
         /// Line of the file, from 1.
         line: usize,
@@ -72,7 +73,7 @@ pub enum SwcError {
         id: i64,
     },
     /// The parent of a node does not exist.
-    #[error("line {line}: node {id} has the parent {parent}, which is in no row; a root has the parent -1")]
+    #[error("line {line}: node {id} has the unknown parent {parent}; a root has the parent -1")]
     UnknownParent {
         /// Line of the file, from 1.
         line: usize,
@@ -83,6 +84,6 @@ pub enum SwcError {
         parent: i64,
     },
     /// The file contains no nodes.
-    #[error("there is no row with a node in it; is it an SWC file?")]
+    #[error("the file has no nodes; is it an SWC file?")]
     NoNodes,
 }

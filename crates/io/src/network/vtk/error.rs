@@ -2,6 +2,7 @@
 
 use crate::network::radii::{NodeArrayFault, RadiusFault};
 use crate::text::Place;
+use anastomesh_mesh::units::counted;
 
 /// Errors of a legacy VTK network.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -11,20 +12,20 @@ pub enum VtkLegacyError {
     #[error("the first line is not '# vtk DataFile Version …': is it a legacy VTK file?")]
     NotVtk,
     /// The third line is neither ASCII nor BINARY.
-    #[error("line 3 says '{found}' where ASCII or BINARY has to be: correct it")]
+    #[error("line 3: expected ASCII or BINARY, found '{found}': correct it")]
     UnknownEncoding {
         /// Text that was found.
         found: String,
     },
     /// The dataset type has no lines.
-    #[error("a dataset of kind '{found}': save lines as POLYDATA or UNSTRUCTURED_GRID")]
+    #[error("unsupported dataset '{found}': save lines as POLYDATA or UNSTRUCTURED_GRID")]
     WrongDataset {
         /// Text that was found.
         found: String,
     },
     /// The keyword is unknown.
     #[error(
-        "{place}: '{found}' is no keyword of a legacy VTK file: a count before it is wrong, or the file is damaged"
+        "{place}: '{found}' is not a keyword of a legacy VTK file: the count before it is wrong, or the file is damaged"
     )]
     UnknownKeyword {
         /// Place in the file.
@@ -43,7 +44,7 @@ pub enum VtkLegacyError {
         needed: &'static str,
     },
     /// The value type is unknown.
-    #[error("{place}: values of type '{kind}' cannot be read; save the file with numbers")]
+    #[error("{place}: values of type '{kind}' are not supported; save numbers")]
     UnknownType {
         /// Place in the file.
         place: Place,
@@ -52,8 +53,8 @@ pub enum VtkLegacyError {
     },
     /// The array is shorter than announced.
     #[error(
-        "{place}: {array} is to have {count} values, more than the rest of the file holds; correct the count, or write \
-         or copy the file again if it is cut short"
+        "{place}: {array} needs {count} values, more than the rest of the file contains; \
+         correct the count, or copy the file again if it is truncated"
     )]
     CutShort {
         /// Place in the file.
@@ -65,7 +66,7 @@ pub enum VtkLegacyError {
         count: usize,
     },
     /// A word is not a number.
-    #[error("{place}: value {index} (from 0) of {array} is '{text}', which is no number of its type: correct it")]
+    #[error("{place}: value {index} (from 0) of {array} is '{text}', not a number of its type: correct it")]
     NotANumber {
         /// Place in the file.
         place: Place,
@@ -79,7 +80,7 @@ pub enum VtkLegacyError {
         text: String,
     },
     /// A cell list is inconsistent.
-    #[error("{place}: cell {cell} (from 0) of {list} goes beyond its list, or offsets do not ascend: correct the list")]
+    #[error("{place}: cell {cell} (from 0) of {list} exceeds the list, or offsets are not ascending: correct the list")]
     BadCells {
         /// Place in the file.
         place: Place,
@@ -90,13 +91,13 @@ pub enum VtkLegacyError {
         cell: usize,
     },
     /// A required section is missing.
-    #[error("there is no section {section} in the file: a network has points and lines; was it written completely?")]
+    #[error("the file has no section {section}: a network needs points and lines; is the file truncated?")]
     MissingSection {
         /// Section.
         section: &'static str,
     },
     /// The length of an array differs from the number of points or cells.
-    #[error("array '{array}' has {found} values, but there are {expected} points or cells: correct the file")]
+    #[error("array '{array}' has {}, expected {expected}: correct the file", counted(*found, "value"))]
     WrongLength {
         /// Name of the array.
         array: String,
@@ -107,7 +108,7 @@ pub enum VtkLegacyError {
     },
     /// A line refers to a missing point.
     #[error(
-        "line cell {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the list of cells"
+        "line cell {line} (from 0) refers to point {point} (from 0), but the file has {points} points: correct the list of cells"
     )]
     UnknownPoint {
         /// Line of the file, from 1.
@@ -118,7 +119,7 @@ pub enum VtkLegacyError {
         points: usize,
     },
     /// There are no lines.
-    #[error("there are no lines in the file ({others} other cells): a network is needed, lines with a radius")]
+    #[error("the file has no lines ({others} other cells): give a network, lines with radii")]
     NoLines {
         /// Number of other cells.
         others: usize,
@@ -130,6 +131,6 @@ pub enum VtkLegacyError {
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
     /// The number of points or edges exceeds the index range.
-    #[error("there are more points than can be numbered ({})", u32::MAX)]
+    #[error("too many points for 32-bit indices ({})", u32::MAX)]
     TooMany,
 }

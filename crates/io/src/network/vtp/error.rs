@@ -2,6 +2,7 @@
 
 use crate::network::radii::{NodeArrayFault, RadiusFault};
 use crate::vtk_xml::VtkError;
+use anastomesh_mesh::units::counted;
 
 /// Errors of a VTP network.
 #[derive(Debug, thiserror::Error)]
@@ -11,19 +12,19 @@ pub enum VtpError {
     #[error(transparent)]
     File(#[from] VtkError),
     /// A required element is missing.
-    #[error("there is no <{element}> in the file: was it written completely?")]
+    #[error("the file has no <{element}>: is it truncated?")]
     MissingElement {
         /// Element.
         element: &'static str,
     },
     /// The points do not have three components.
-    #[error("the points have {components} coordinates; three are needed")]
+    #[error("the points have {}, expected 3", counted(*components, "coordinate"))]
     BadPoints {
         /// Number of components.
         components: usize,
     },
     /// The length of an array differs from the number of points or cells.
-    #[error("array '{array}' has {found} values, but the file announces {expected}: was it written completely?")]
+    #[error("array '{array}' has {}, expected {expected}: is the file truncated?", counted(*found, "value"))]
     WrongLength {
         /// Name of the array.
         array: String,
@@ -33,14 +34,14 @@ pub enum VtpError {
         found: usize,
     },
     /// Connectivity or offsets of the lines are not integers.
-    #[error("array '{array}' of the lines holds no integers: write it as Int64")]
+    #[error("line array '{array}' has no integer type: write it as Int64")]
     NotIntegers {
         /// Name of the array.
         array: &'static str,
     },
     /// The offsets of the lines are not ascending or exceed the connectivity.
     #[error(
-        "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices there are: \
+        "line {line} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices: \
          correct the offsets"
     )]
     BadOffset {
@@ -54,7 +55,7 @@ pub enum VtpError {
     },
     /// A line refers to a missing point.
     #[error(
-        "line {line} (from 0) names point {point}, but there are only {points} points (from 0): correct the connectivity"
+        "line {line} (from 0) refers to point {point} (from 0), but the file has {points} points: correct the connectivity"
     )]
     UnknownPoint {
         /// Line of the file, from 1.
@@ -66,8 +67,8 @@ pub enum VtpError {
     },
     /// There are no lines.
     #[error(
-        "there are no lines in the file ({polygons} polygons and strips, {vertices} vertices): a network is needed, lines \
-         with a radius, not a surface"
+        "the file has no lines ({polygons} polygons and strips, {vertices} vertices): \
+         give a network, lines with radii, not a surface"
     )]
     NoLines {
         /// Number of polygons and strips.
@@ -82,6 +83,6 @@ pub enum VtpError {
     #[error(transparent)]
     NodeArray(#[from] NodeArrayFault),
     /// The number of points or edges exceeds the index range.
-    #[error("there are more points than can be numbered ({})", u32::MAX)]
+    #[error("too many points for 32-bit indices ({})", u32::MAX)]
     TooMany,
 }

@@ -10,7 +10,7 @@ pub enum MeditFault {
     #[error(transparent)]
     Text(#[from] TextFault),
     /// The first line does not identify a Medit file.
-    #[error("line {line}: '{found}' stands where MeshVersionFormatted has to be; is it a Medit text file?")]
+    #[error("line {line}: expected MeshVersionFormatted, found '{found}'; is it a Medit text file?")]
     NotMedit {
         /// Line of the file, from 1.
         line: usize,
@@ -18,7 +18,7 @@ pub enum MeditFault {
         found: String,
     },
     /// The points are not three-dimensional.
-    #[error("line {line}: the mesh has the dimension {dimension}; it has to be 3")]
+    #[error("line {line}: the mesh has dimension {dimension}, expected 3")]
     Dimension {
         /// Line of the file, from 1.
         line: usize,
@@ -26,7 +26,7 @@ pub enum MeditFault {
         dimension: i64,
     },
     /// There are cells that are neither tetrahedra nor triangles.
-    #[error("line {line}: there are {kind}; only tetrahedra and triangles are supported")]
+    #[error("line {line}: {kind} are not supported, only tetrahedra and triangles")]
     UnsupportedCells {
         /// Line of the file, from 1.
         line: usize,
@@ -34,7 +34,7 @@ pub enum MeditFault {
         kind: String,
     },
     /// A list occurs twice.
-    #[error("line {line}: a second list of {kind}; there may be one")]
+    #[error("line {line}: second list of {kind}: merge the lists")]
     Repeated {
         /// Line of the file, from 1.
         line: usize,
@@ -42,7 +42,7 @@ pub enum MeditFault {
         kind: &'static str,
     },
     /// A cell refers to a missing point.
-    #[error("{kind} {cell} names the point {index}, but the points are numbered from 1 to {points}: correct it")]
+    #[error("{kind} {cell} refers to point {index}, but points are numbered from 1 to {points}: correct it")]
     BadIndex {
         /// List of the cell.
         kind: &'static str,
@@ -54,7 +54,7 @@ pub enum MeditFault {
         points: usize,
     },
     /// A required list is missing.
-    #[error("the list of {what} is missing: was it written completely?")]
+    #[error("the list of {what} is missing: is the file truncated?")]
     Missing {
         /// Name of the list.
         what: &'static str,

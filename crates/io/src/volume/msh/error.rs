@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum MshFault {
     /// A required section is missing.
-    #[error("'{what}' is missing: was it written or copied completely?")]
+    #[error("'{what}' is missing: is the file truncated?")]
     Missing {
         /// Name of the section.
         what: &'static str,
@@ -14,19 +14,19 @@ pub enum MshFault {
     #[error("the file ends too early: it was not written or copied completely; write or copy it again")]
     CutShort,
     /// A number or name is invalid.
-    #[error("no number or name of the format before byte {byte}: was it written or copied completely?")]
+    #[error("invalid number or name before byte {byte}: is the file truncated?")]
     BadNumber {
         /// Byte offset.
         byte: usize,
     },
     /// Two nodes have an equal tag.
-    #[error("two nodes have the tag {tag}: give each its own")]
+    #[error("duplicate node tag {tag}: tags must differ")]
     RepeatedTag {
         /// Tag that was found.
         tag: u64,
     },
     /// The format version is not supported.
-    #[error("version {version} of the format is not read; Gmsh writes 4.1 with -format msh41")]
+    #[error("format version {version} is not supported; Gmsh writes 4.1 with -format msh41")]
     UnsupportedVersion {
         /// Version that was found.
         version: String,

@@ -14,13 +14,13 @@ pub enum PvtuFault {
     #[error(transparent)]
     Piece(#[from] VtuFault),
     /// A required element or attribute is missing.
-    #[error("'{what}' is missing: was it written completely?")]
+    #[error("'{what}' is missing: is the file truncated?")]
     Missing {
         /// Name of the element or attribute.
         what: &'static str,
     },
     /// Two pieces have different positions for a shared point.
-    #[error("the pieces have different positions for the point {id}: they are not of one mesh; write them again")]
+    #[error("the pieces have different positions of point {id}: they belong to different meshes; write them again")]
     PointsDiffer {
         /// Global id.
         id: i64,

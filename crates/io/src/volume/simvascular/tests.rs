@@ -30,7 +30,7 @@ fn pieces_make_no_difference_and_tetrahedra_are_alone() {
     }
     let read = read_mesh(&path("whole.svmesh").join(MESH)).unwrap();
     assert_eq!((&read.volume.mesh, read.labelled), (&volume.mesh, false));
-    assert!(read_mesh(&path("whole.svmesh")).unwrap_err().to_string().contains("written, not read"));
+    assert!(read_mesh(&path("whole.svmesh")).unwrap_err().to_string().contains("written but not read"));
 }
 
 #[test]

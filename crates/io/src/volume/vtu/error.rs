@@ -10,7 +10,7 @@ pub enum VtuFault {
     #[error(transparent)]
     Vtk(#[from] VtkError),
     /// A required element or array is missing.
-    #[error("'{what}' is missing: was it written completely?")]
+    #[error("'{what}' is missing: is the file truncated?")]
     Missing {
         /// Name of the element or array.
         what: &'static str,
@@ -26,7 +26,7 @@ pub enum VtuFault {
         found: usize,
     },
     /// The cell offsets are inconsistent with the cell types.
-    #[error("cell {cell} has another number of points than its type: correct its type or its offsets")]
+    #[error("the number of points of cell {cell} does not match its type: correct its type or offsets")]
     BadOffset {
         /// The first such cell.
         cell: usize,

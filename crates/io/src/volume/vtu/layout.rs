@@ -30,7 +30,7 @@ pub(super) struct BlockPiece {
 #[non_exhaustive]
 pub enum VtuPiecesError {
     /// The layout differs from that of files written by this program.
-    #[error("the file is not laid out block by block ({what})")]
+    #[error("the file is not stored in blocks ({what})")]
     Layout {
         /// Difference of the layout.
         what: &'static str,

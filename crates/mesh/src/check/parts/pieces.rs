@@ -22,19 +22,19 @@ use std::ops::Range;
 #[non_exhaustive]
 pub enum Unfit {
     /// A tetrahedron or labelled face refers to a missing point, or one not used by the piece.
-    #[error("piece {0} names points that it does not have")]
+    #[error("piece {0} refers to missing points")]
     Points(u32),
     /// A labelled face is not on the boundary of the piece, is reversed, or is labelled twice.
-    #[error("labelled faces of piece {0} are not its boundary")]
+    #[error("the labelled faces of piece {0} are not its boundary")]
     Labels(u32),
     /// A face is neither wall nor of a cap.
     #[error("faces of piece {0} are neither wall nor cap")]
     Patch(u32),
     /// Faces without label that occur in no other piece, or in more than one.
-    #[error("piece {0} has faces without label that it does not share with one other piece")]
+    #[error("piece {0} has unlabelled faces that it does not share with exactly one other piece")]
     Joint(u32),
     /// Pieces share points outside joints, or some points are in no piece.
-    #[error("pieces share points outside of common faces, or points are not used")]
+    #[error("pieces share points outside common faces, or points are unused")]
     Shared,
 }
 

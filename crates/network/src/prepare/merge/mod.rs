@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn groups_go_before_geometry() {
         let geometry = [lines_left(0.8, &[]), lines_left(0.8, &groups([3, 4], true))];
-        assert_eq!(geometry, [1, 1], "within each other, and nothing is said of the inside of a branching");
+        assert_eq!(geometry, [1, 1], "within each other, and no group inside a branching");
         assert_eq!(lines_left(0.8, &groups([3, 4], false)), 2);
     }
 
