@@ -77,11 +77,16 @@ pub struct BlockArgs {
 }
 
 impl BlockArgs {
-    /// Says what may help.
+    /// Prints the options that may help.
     pub fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.refine.is_some(), self.rho) {
+        for line in self.advice(run, invalid) {
             log::note(&line);
         }
+    }
+
+    /// Options that may help.
+    pub fn advice(&self, run: &RunReport, invalid: bool) -> Vec<String> {
+        advice(run, invalid, self.refine.is_some(), self.rho)
     }
 
     /// The plan that they ask for. `fuse`: vessels that overlap once the network is refined are meshed together.
