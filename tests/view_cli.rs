@@ -7,7 +7,7 @@ use common::oracle::missing;
 use common::program::*;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn view(input: &Path, out: &Path, options: &[&str]) -> Output {
@@ -41,8 +41,11 @@ fn a_mesh_a_network_and_a_surface_become_pages() {
     assert_eq!(known["tets"]["shown"], volume.mesh.tets.len());
     assert_eq!(known["network"]["edges"], 29);
     assert_eq!(known["patches"].as_array().map(Vec::len), Some(volume.patches.len()));
-    assert_eq!(known["faults"], Value::Array(Vec::new()));
+    assert_eq!((&known["faults"], &known["unit"]), (&Value::Array(Vec::new()), &Value::Null));
+    assert_eq!(known["check"]["verdict"], "valid");
     assert!(fs::metadata(&page).expect("a page").len() < 1_000_000);
+    assert_code(&view(&tree, &page, &["-q", "--no-check", "--units", "um:mm"]), FINE);
+    assert_eq!((&facts(&page)["check"]["verdict"], &facts(&page)["unit"]), (&"not_checked".into(), &"mm".into()));
     assert_code(&view(&network, &page, &["-q"]), FINE);
     assert!(facts(&page)["wall"].is_null() && facts(&page)["network"]["orders"].as_u64() > Some(2));
     assert_code(&view(&fixture("torus.off"), &page, &["-q"]), FINE);
@@ -102,12 +105,10 @@ fn faults_are_listed() {
     let dumps = folder.path().join("m.vtu.failed");
     assert_code(&view(&network, &page, &["--dump-dir", dumps.to_str().expect("a path")]), FINE);
     let faults = &facts(&page)["faults"];
-    let failed = faults
-        .as_array()
-        .expect("a list")
-        .iter()
-        .find(|f| f["what"].as_str().is_some_and(|w| w.contains("not meshed: cluster")));
-    let place = failed.and_then(|f| f["place"][0].as_f64()).expect("a failed block");
+    let group = faults.as_array().expect("a list").iter().find(|group| group["kind"] == "blocks not meshed");
+    let failed = group.map(|group| &group["faults"][0]).expect("a failed block");
+    assert!(failed["what"].as_str().is_some_and(|what| what.contains("cluster")));
+    let place = failed["place"][0].as_f64().expect("a position");
     assert!((place - 50.0).abs() < 5.0, "{faults}");
 }
 
@@ -123,10 +124,55 @@ fn what_cannot_be_viewed_is_said() {
     assert!(entries(folder.path()).is_empty());
 }
 
-/// Page rendered by a browser at a requested position; `None` without a browser.
-fn shown(page: &Path, at: [f64; 3]) -> Option<String> {
-    let [x, y, z] = at;
-    let address = format!("file://{}#at={x},{y},{z}", page.display());
+/// Writes a mesh of which `count` tetrahedra are inverted.
+fn write_inverted(folder: &Path, count: usize) -> PathBuf {
+    let [tree, broken] = ["tree.mesh", "broken.mesh"].map(|name| folder.join(name));
+    assert_code(&mesh(&fixture("tree_30.vtp"), &tree, &["-q"]), FINE);
+    let text = fs::read_to_string(&tree).expect("a mesh");
+    let mut lines: Vec<String> = text.lines().map(Into::into).collect();
+    let first = lines.iter().position(|l| l.trim() == "Tetrahedra").expect("tetrahedra") + 2;
+    for line in &mut lines[first..first + count] {
+        let mut words: Vec<&str> = line.split_whitespace().collect();
+        words.swap(0, 1);
+        *line = words.join(" ");
+    }
+    fs::write(&broken, lines.join("\n")).expect("written");
+    broken
+}
+
+#[test]
+fn every_fault_of_an_invalid_mesh_is_listed_and_reachable() {
+    const COUNT: usize = 176;
+    let folder = folder();
+    let page = folder.path().join("p.html");
+    assert_code(&view(&write_inverted(folder.path(), COUNT), &page, &["-q"]), FINE);
+    let known = facts(&page);
+    let of = |words: &str| {
+        let groups = known["faults"].as_array().expect("groups").iter();
+        groups.filter(|g| g["kind"].as_str().is_some_and(|kind| kind.contains(words))).collect::<Vec<_>>()
+    };
+    let [positive] = of("every tetrahedron is positive")[..] else { panic!("{}", known["faults"]) };
+    assert_eq!(known["check"]["verdict"], "invalid");
+    assert_eq!(
+        (positive["count"].as_u64(), positive["faults"].as_array().map(Vec::len)),
+        (Some(COUNT as u64), Some(COUNT))
+    );
+    let sizes: Vec<usize> =
+        of("").iter().filter_map(|g| g["faults"].as_array()).map(Vec::len).filter(|&n| n > 0).collect();
+    let Some(html) = shown(&page, "fault=2") else {
+        return missing("no browser was found (apt-get install chromium)");
+    };
+    assert!(html.contains("role=\"status\" class=\"\">NOT valid: "), "no banner");
+    // One tab stop per list, from which arrow keys lead to the other faults.
+    let stops = |index: &str| html.matches(&format!("<li><button type=\"button\" tabindex=\"{index}\"")).count();
+    assert_eq!((stops("0"), stops("-1")), (sizes.len(), sizes.iter().map(|n| n - 1).sum()));
+    assert_eq!(html.matches("aria-current=\"true\"").count(), 1);
+    assert!(html.contains("<output id=\"pick\">failed: every tetrahedron is positive\ntetrahedron 1\nat "));
+}
+
+/// Page rendered by a browser with a fragment in its address; `None` without a browser.
+fn shown(page: &Path, fragment: &str) -> Option<String> {
+    let address = format!("file://{}#{fragment}", page.display());
     let browser = ["chromium", "chromium-browser", "google-chrome"]
         .into_iter()
         .find(|name| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success()))?;
@@ -148,14 +194,21 @@ fn a_browser_shows_it_and_names_what_is_there() {
     let cap = volume.patches[1].cap.expect("the inlet");
     let inside = cap.center - cap.normal * cap.radius;
     assert_code(&view(&tree, &page, &["-q", "--network", network.to_str().expect("a path")]), FINE);
-    let Some(html) = shown(&page, inside.into()) else {
+    let at = format!("at={},{},{}", inside.x, inside.y, inside.z);
+    let Some(html) = shown(&page, &at) else {
         return missing("no browser was found (apt-get install chromium)");
     };
-    assert!(html.contains("data-ready=") && !html.contains("id=\"wait\""));
+    assert!(html.contains("data-ready=") && !html.contains("id=\"loading\""));
+    assert!(html.contains("✓ valid") && html.contains("role=\"status\" hidden"));
+    let triad = html.split("<g class=").skip(1).filter(|axis| axis.contains("x2=") && axis.contains("</text>"));
+    assert_eq!(triad.count(), 3);
+    let bar = html.split_once("aria-label=\"Scale bar: ").expect("a scale bar").1;
+    let length: f64 = bar.split_once('"').and_then(|(length, _)| length.parse().ok()).expect("its length");
+    assert!(length > 0.0 && html.contains("clipped tetrahedra"));
     for word in ["patch 1: wall", "block ", "vessel (branch)", "nearest node", "radius "] {
         assert!(html.contains(word), "'{word}'");
     }
     assert_code(&view(&network, &page, &["-q"]), FINE);
-    let html = shown(&page, inside.into()).expect("a browser");
+    let html = shown(&page, &at).expect("a browser");
     assert!(html.contains("vessel (branch)") && html.contains("data-ready="));
 }

@@ -79,9 +79,14 @@ pub struct BlockArgs {
 impl BlockArgs {
     /// Prints advice.
     pub fn advise(&self, run: &RunReport, invalid: bool) {
-        for line in advice(run, invalid, self.refine.is_some(), self.rho) {
+        for line in self.advice(run, invalid) {
             log::note(&line);
         }
+    }
+
+    /// Options that may help.
+    pub fn advice(&self, run: &RunReport, invalid: bool) -> Vec<String> {
+        advice(run, invalid, self.refine.is_some(), self.rho)
     }
 
     /// Plan of these options. `fuse`: vessels that still overlap after refinement are meshed as one lumen.

@@ -69,8 +69,8 @@ fn write_page(args: &Args, report: &CheckReport, mut mesh: OpenedMesh) -> Result
     mesh.label_boundary();
     let (mesh, notes) = (mesh.source(), mesh.notes());
     args.report.write(&args.mesh, Some(page::headline(report)), &notes.options, |page| {
-        page.add(page::summary(report));
-        page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
+        page.add(page::summary(report, page::LengthUnit::default()));
+        page.add(Section::new("Overview").pictures(&page::mesh_pictures(mesh)?, false)?);
         page.add(page::validity(report, mesh)?);
         if let Some(quality) = &report.quality {
             page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));

@@ -5,6 +5,7 @@
 use std::ffi::{OsStr, OsString};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -14,6 +15,8 @@ use super::exit::Failure;
 use anastomesh_io::write_text;
 
 const OPTION: &str = "--config";
+/// Options of this run.
+static OPTIONS: OnceLock<Vec<Vec<String>>> = OnceLock::new();
 
 /// Command line with the options of the file inserted before the typed ones, and the path of the file.
 pub fn expanded(mut words: Vec<OsString>, definition: &Command) -> Result<(Vec<OsString>, Option<PathBuf>), Failure> {
@@ -90,6 +93,29 @@ pub fn write_resolved(verb: &Command, matches: &ArgMatches) -> Result<(), Failur
         let _ = writeln!(text, "{}{key} = {value}", if asked { "" } else { "# " });
     }
     write_text(&path, &text).map_err(|e| Failure::unwritable(&path, &e))
+}
+
+/// All options of a verb: name, value, and source of the value. Given ones come first.
+pub fn options_in_force() -> &'static [Vec<String>] {
+    OPTIONS.get().map_or(&[], Vec::as_slice)
+}
+
+/// Keeps the options of this run for `options_in_force`.
+pub fn keep_options(verb: &Command, matches: &ArgMatches) {
+    let row = |arg: &Arg| {
+        let key = arg.get_long().filter(|key| !matches!(*key, "help" | "version"))?;
+        let value = match resolved(arg, matches) {
+            Some((_, Value::String(text))) => text,
+            Some((_, value)) => value.to_string(),
+            None => "none".into(),
+        };
+        let is_given = !matches!(matches.value_source(arg.get_id().as_str()), None | Some(ValueSource::DefaultValue));
+        Some(vec![format!("--{key}"), value, if is_given { "given" } else { "default" }.into()])
+    };
+    let mut rows: Vec<Vec<String>> = verb.get_arguments().filter_map(row).collect();
+    rows.sort_by_key(|row| row[2] == "default");
+    // The process runs one verb; a second call changes nothing.
+    let _ = OPTIONS.set(rows);
 }
 
 /// Option and its value, if present.

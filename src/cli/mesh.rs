@@ -352,18 +352,21 @@ impl Args {
     ) -> Result<(), Failure> {
         let failed = || (Mark::Bad, format!("{} could not be meshed", counted(run.failed.len(), "block")));
         let verdict = found.map_or_else(failed, |found| page::headline(found.check));
+        let unit = page::LengthUnit(self.network.units.map(|units| units.names()[1]));
+        let invalid = found.is_none_or(|found| !found.check.is_valid());
         self.report.write(&self.output, Some(verdict), plan, |page| {
+            page.add(page::advice(&self.blocks.advice(run, invalid)));
             let Some(&Found { mesh, network, check, fidelity, caps }) = found else {
-                page.add(page::failed_blocks(&networks.network, run)?);
+                page.add(page::failed_blocks(&networks.network, run, unit)?);
                 page.add(page::run(run, &[]));
                 return Ok(());
             };
-            page.add(page::summary(check));
+            page.add(page::summary(check, unit));
             let mut pictures = page::mesh_pictures(mesh)?;
-            pictures.insert(0, page::network_picture(&networks.network, &[], "The network by radius."));
-            page.add(Section::new("At a glance").pictures(&pictures, false)?);
+            pictures.insert(0, page::network_picture(&networks.network, &[], "Network by vessel radius", unit));
+            page.add(Section::new("Overview").pictures(&pictures, false)?);
             if !run.failed.is_empty() {
-                page.add(page::failed_blocks(&networks.network, run)?);
+                page.add(page::failed_blocks(&networks.network, run, unit)?);
             }
             page.add(page::validity(check, mesh)?);
             if let Some(quality) = &check.quality {
@@ -373,11 +376,11 @@ impl Args {
                 page.add(page::fidelity(fidelity, &Along::of(network, mesh)?));
             }
             if let Some(report) = &networks.refine {
-                page.add(page::refinement(report, &networks.prepared, &networks.network)?);
+                page.add(page::refinement(report, &networks.prepared, &networks.network, unit)?);
             }
             page.add(page::run(run, &page::block_sizes(mesh)?));
             if let Some(caps) = caps {
-                page.add(page::terminals(caps, &networks.names));
+                page.add(page::terminals(caps, &networks.names, unit));
             }
             Ok(())
         })

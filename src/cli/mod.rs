@@ -131,6 +131,7 @@ pub fn main() -> ExitCode {
         }
     };
     args.log_format.set();
+    keep_options(&matches);
     let result = std::panic::catch_unwind(|| match &args.verb {
         Verb::Mesh(args) => mesh::run(args),
         Verb::Surface(args) => surface::run(args),
@@ -161,6 +162,15 @@ pub fn main() -> ExitCode {
 fn failed(Failure { exit, message }: &Failure) -> ExitCode {
     log::error(message);
     (*exit).into()
+}
+
+/// Keeps the options in force for the report.
+fn keep_options(matches: &ArgMatches) {
+    let definition = definition();
+    let verb = matches.subcommand().and_then(|(name, matches)| Some((definition.find_subcommand(name)?, matches)));
+    if let Some((verb, matches)) = verb {
+        config::keep_options(verb, matches);
+    }
 }
 
 /// Writes the resolved options.

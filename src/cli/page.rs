@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::config::options_in_force;
 use super::exit::Failure;
 use super::stop;
 use crate::report::page::{Mark, Page, Section};
@@ -45,7 +46,12 @@ impl ReportArgs {
         let mut page = Page::new(about.file_name().unwrap_or(about.as_os_str()).to_string_lossy(), verdict);
         fill(&mut page).map_err(|e| Failure::input(format!("{}: {e}", about.display())))?;
         let plan = serde_json::to_string_pretty(plan).unwrap_or_default();
-        page.add(Section::new("Command line").text(&stop::command_line()).folded("Resolved options", &plan));
+        page.add(
+            Section::new("Command and options")
+                .command(&stop::command_line())
+                .table(&["option", "value", "source"], options_in_force())
+                .folded("Resolved parameters (JSON)", &plan),
+        );
         write_text(path, &page.html()).map_err(|e| Failure::unwritable(path, &e))
     }
 }

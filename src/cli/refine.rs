@@ -184,9 +184,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             write_text(path, &text(report)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         }
     }
+    let unit = page::LengthUnit(args.network.units.map(|units| units.names()[1]));
     pool.install(|| {
         args.report.write(&args.output, Some(page::overlaps_left(report)), &params, |page| {
-            page.add(page::refinement(report, &network.skeleton, &refined.skeleton)?);
+            page.add(page::refinement(report, &network.skeleton, &refined.skeleton, unit)?);
             Ok(())
         })
     })?;

@@ -15,7 +15,7 @@ use super::network::NetworkArgs;
 use super::picture::vessels;
 use crate::block::BlockDump;
 use crate::pipeline::{Datum, VesselData};
-use crate::view::{Fault, ViewerPage, Wall, WallOptions, add_network, add_tets};
+use crate::view::{FaultGroup, ViewerPage, Wall, WallOptions, add_network, add_tets};
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::source::MeshSource;
@@ -80,8 +80,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 impl Args {
     fn page(&self, mut page: ViewerPage) -> Result<ViewerPage, Failure> {
         let path: &Path = &self.input.network;
-        let mut faults = self.dumps()?;
+        page.know("unit", self.input.units.map(|units| units.names()[1]).into());
+        let mut faults: Vec<FaultGroup> = self.dumps()?.into_iter().collect();
         if let Some(left) = left_in(path)? {
+            page.add_check(Err("`view` checks finished meshes only"));
             faults.extend(self.add_mesh(&mut page, &left.whole(&()))?);
             page.add_faults(&faults);
             return Ok(page);
@@ -89,7 +91,7 @@ impl Args {
         match FileKind::of(path, "view")? {
             FileKind::Network => {
                 let (network, inlets) = vessels(&self.input)?;
-                faults.extend(Fault::of_overlaps(&network));
+                faults.extend(FaultGroup::of_overlaps(&network));
                 know_network(&mut page, &network, &inlets)?;
             }
             FileKind::Surface => {
@@ -98,7 +100,7 @@ impl Args {
             }
             FileKind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
-                faults.extend(self.faults_of(&opened)?);
+                faults.extend(self.faults_of(&mut page, &opened)?);
                 opened.label_boundary();
                 faults.extend(self.add_mesh(&mut page, opened.source())?);
             }
@@ -107,17 +109,26 @@ impl Args {
         Ok(page)
     }
 
-    /// Failures found by a check of the mesh, unless it is too large or the check is disabled.
-    fn faults_of(&self, opened: &OpenedMesh) -> Result<Vec<Fault>, Failure> {
-        if self.no_check || (!self.check && opened.source().counts().tets > CHECKED) {
-            return Ok(Vec::new());
-        }
-        let check = check_opened(&self.input.network, opened, self.memory)?;
-        Ok(check.map_or_else(Vec::new, |check| Fault::of_check(&check)))
+    /// Checks a mesh unless it is large or `--no-check` is given, and returns its faults.
+    fn faults_of(&self, page: &mut ViewerPage, opened: &OpenedMesh) -> Result<Vec<FaultGroup>, Failure> {
+        let skipped = if self.no_check {
+            Some("--no-check was given")
+        } else if !self.check && opened.source().counts().tets > CHECKED {
+            Some("the mesh has more than 2 million tetrahedra; --check checks it")
+        } else {
+            None
+        };
+        let check = match skipped {
+            Some(reason) => Err(reason),
+            None => check_opened(&self.input.network, opened, self.memory)?
+                .ok_or("the file cannot be checked within --memory"),
+        };
+        page.add_check(check.as_ref().map_err(|reason| *reason));
+        Ok(check.map_or_else(|_| Vec::new(), |check| FaultGroup::of_check(&check)))
     }
 
     /// Adds a mesh, and returns the positions of missing blocks.
-    fn add_mesh(&self, page: &mut ViewerPage, mesh: &dyn MeshSource) -> Result<Vec<Fault>, Failure> {
+    fn add_mesh(&self, page: &mut ViewerPage, mesh: &dyn MeshSource) -> Result<Option<FaultGroup>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
         let network = match &self.made_of {
@@ -133,7 +144,7 @@ impl Args {
         }
         let tets = add_tets(mesh, &wall, &mut page.pack).map_err(failed)?;
         page.know("tets", tets);
-        let missing = Fault::of_missing(&wall, mesh.patches());
+        let missing = FaultGroup::of_missing(&wall, mesh.patches());
         page.add_wall(wall, mesh.patches());
         if let Some((network, inlets)) = &network {
             know_network(page, network, inlets)?;
@@ -142,7 +153,7 @@ impl Args {
     }
 
     /// Failed blocks, from their dumps.
-    fn dumps(&self) -> Result<Vec<Fault>, Failure> {
+    fn dumps(&self) -> Result<Option<FaultGroup>, Failure> {
         let beside = || {
             let mut name = self.input.network.clone().into_os_string();
             name.push(".failed");
@@ -150,7 +161,7 @@ impl Args {
         };
         let folder = self.dump_dir.clone().unwrap_or_else(beside);
         if self.dump_dir.is_none() && !folder.is_dir() {
-            return Ok(Vec::new());
+            return Ok(None);
         }
         let unreadable = |e: io::Error| Failure::unreadable(&folder, &e);
         let mut files = Vec::new();
@@ -162,11 +173,8 @@ impl Args {
         }
         files.sort_unstable();
         // Other files in the folder are ignored.
-        let fault = |path: &PathBuf| {
-            let dump = BlockDump::from_json(&fs::read(path).ok()?).ok()?;
-            Fault::of_dump(&dump)
-        };
-        Ok(files.iter().filter_map(fault).collect())
+        let dump = |path: &PathBuf| BlockDump::from_json(&fs::read(path).ok()?).ok();
+        Ok(FaultGroup::of_dumps(files.iter().filter_map(dump)))
     }
 }
 

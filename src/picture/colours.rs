@@ -51,6 +51,8 @@ pub(super) const INSIDE: Rgb = [238, 224, 198];
 pub(super) const MARKED: Rgb = [226, 40, 40];
 const INLET: Rgb = [38, 101, 178];
 const OUTLET: Rgb = [236, 180, 64];
+/// Colours of the boundary patches of a network's mesh.
+pub const PATCH_COLOURS: [(Rgb, &str); 3] = [(WALL_COLOURS[0], "wall"), (INLET, "inlet"), (OUTLET, "outlet")];
 /// Patches without a known role.
 const OTHERS: [Rgb; 6] =
     [[38, 101, 178], [236, 180, 64], [62, 150, 110], [150, 96, 170], [90, 170, 205], [140, 140, 140]];
@@ -96,7 +98,7 @@ fn hue(turn: f64, saturation: f64, value: f64) -> Rgb {
 }
 
 /// Colour of a radius ratio.
-pub(super) fn of_quality(ratio: f64) -> Rgb {
+pub fn of_quality(ratio: f64) -> Rgb {
     between(&QUALITY, ratio)
 }
 

@@ -16,7 +16,7 @@ mod shade;
 
 pub use camera::{Camera, Direction};
 pub use canvas::Canvas;
-pub use colours::{Background, Colour, Legend};
+pub use colours::{Background, Colour, Legend, PATCH_COLOURS, Rgb, of_quality};
 pub use image::Image;
 pub use mesh::{MeshPicture, Opening};
 pub use network::{NetworkPicture, Shown};

@@ -26,12 +26,15 @@ class Tets {
     const SIDES = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1];
     const place = new Float32Array(36 * found.length), normal = new Int8Array(48 * found.length);
     const colour = new Uint8Array(48 * found.length), lines = new Uint32Array(24 * found.length);
+    const lengths = new Float32Array(12 * found.length);
     const at = v => [points[3 * v], points[3 * v + 1], points[3 * v + 2]];
     found.forEach((t, i) => {
       const corners = [0, 1, 2, 3].map(k => at(tets[t + k]));
       const own = colourOf(this.blocks[t / 4], corners);
       for (let side = 0; side < 4; side++) {
         const [a, b, c] = [0, 1, 2].map(k => corners[SIDES[3 * side + k]]);
+        const length = [[a, b], [b, c], [c, a]].reduce((sum, [p, q]) => sum + Math.hypot(...add(q, p, -1)) / 3, 0);
+        lengths.fill(length, 12 * i + 3 * side, 12 * i + 3 * side + 3);
         const n = unit(cross(add(b, a, -1), add(c, a, -1))).map(x => 127 * x);
         [a, b, c].forEach((p, k) => {
           const v = 12 * i + 3 * side + k;
@@ -53,12 +56,13 @@ class Tets {
     gl.bindBuffer(gl.ARRAY_BUFFER, first);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    this.buffers.push(attribute(gl, 1, lengths, 1, gl.FLOAT, false));
     this.buffers.push(buffer(gl, lines, gl.ELEMENT_ARRAY_BUFFER));
     gl.bindVertexArray(null);
     this.count = 12 * found.length;
   }
 
-  draw(at) {
+  draw(at, view) {
     if (this.count === 0) return;
     const gl = this.gl;
     gl.uniform3f(at.origin, 0, 0, 0);
@@ -73,8 +77,7 @@ class Tets {
     gl.disable(gl.POLYGON_OFFSET_FILL);
     gl.bindVertexArray(this.edges);
     gl.vertexAttrib4f(2, 0.15, 0.15, 0.15, 1);
-    gl.uniform1f(at.flatness, 2);
-    gl.drawElements(gl.LINES, 2 * this.count, gl.UNSIGNED_INT, 0);
+    drawFadingLines(gl, at, view, () => gl.drawElements(gl.LINES, 2 * this.count, gl.UNSIGNED_INT, 0));
   }
 }
 

@@ -3,7 +3,7 @@
 const facts = JSON.parse(document.getElementById("facts").textContent);
 
 /** Decompresses the data of the page. */
-async function unpacked() {
+async function unpack() {
   const element = document.getElementById("data");
   const address = "data:application/octet-stream;base64," + element.textContent;
   element.remove();
@@ -13,7 +13,7 @@ async function unpacked() {
 }
 
 /** Returns a function that decodes the array of a name; unknown names give an empty array. */
-function arrays(bytes) {
+function decoder(bytes) {
   const entries = new Map(facts.arrays.map(entry => [entry.name, entry]));
   return name => {
     const entry = entries.get(name);

@@ -17,12 +17,18 @@ uniform mat4 camera; uniform mat3 turn; uniform vec4 cut; uniform int names;
 const FACES = [HEAD + `
 layout(location = 0) in vec3 place; layout(location = 1) in vec3 normal; layout(location = 2) in vec4 colour;
 layout(location = 3) in uint name;
-uniform vec3 origin; uniform float size;
+uniform vec3 origin; uniform float size, pixels;
 out vec3 n; out vec4 c; out float behind, depth; flat out uint id;
 void main() {
   vec3 p = origin + size * place;
   vec4 q = camera * vec4(p, 1.0);
   gl_Position = q; n = turn * normal; c = colour; id = name; depth = -q.z; behind = cut.w - dot(cut.xyz, p);
+  // Mesh edges have their length instead of a normal, and fade below ten pixels.
+  if (pixels > 0.0) {
+    c.a *= smoothstep(2.0, 10.0, normal.x * pixels);
+    // Lifted by 1.5 pixels, so that steep faces do not cover their own edges.
+    gl_Position.z -= 1.5 / pixels * length(vec3(camera[0].z, camera[1].z, camera[2].z));
+  }
 }`, HEAD + LIGHT + `
 in vec3 n; in vec4 c; in float behind, depth; flat in uint id;
 uniform float flatness;

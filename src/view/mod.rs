@@ -16,7 +16,7 @@ mod tets;
 mod tube;
 mod wall;
 
-pub use faults::Fault;
+pub use faults::FaultGroup;
 pub use network::add_network;
 pub use page::ViewerPage;
 pub use tets::add_tets;

@@ -1,10 +1,12 @@
 //! Assembly of the HTML page.
 
 use super::chunk::pack_wall;
-use super::faults::Fault;
+use super::faults::FaultGroup;
 use super::pack::Pack;
 use super::wall::Wall;
 use anastomesh_mesh::Patch;
+use anastomesh_mesh::check::CheckReport;
+use anastomesh_mesh::check::text::verdict;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -13,11 +15,15 @@ use std::io;
 const FRAME: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 /// Scripts in the order of their dependencies.
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("data.js"),
     include_str!("gl.js"),
+    include_str!("camera.js"),
     include_str!("scene.js"),
     include_str!("cut.js"),
+    include_str!("overlay.js"),
+    include_str!("input.js"),
+    include_str!("panel.js"),
     include_str!("main.js"),
 ];
 
@@ -50,8 +56,17 @@ impl ViewerPage {
     }
 
     /// Adds faults that the viewer can navigate to.
-    pub fn add_faults(&mut self, faults: &[Fault]) {
+    pub fn add_faults(&mut self, faults: &[FaultGroup]) {
         self.know("faults", json!(faults));
+    }
+
+    /// Adds the verdict of a check; without a report the mesh was not checked, for this reason.
+    pub fn add_check(&mut self, check: Result<&CheckReport, &str>) {
+        let fact = match check {
+            Ok(check) => json!({ "verdict": check.verdict, "text": verdict(check.verdict) }),
+            Err(reason) => json!({ "verdict": "not_checked", "text": format!("Not checked: {reason}") }),
+        };
+        self.know("check", fact);
     }
 
     /// Returns the HTML document.

@@ -7,14 +7,14 @@ const QUALITY = [[165, 0, 38], [244, 109, 67], [254, 224, 139], [102, 189, 160],
 const VIRIDIS = [[68, 1, 84], [71, 45, 123], [59, 82, 139], [44, 114, 142], [33, 145, 140], [40, 174, 128], [94, 201, 98],
   [173, 220, 48], [253, 231, 37]];
 
-function between(scale, share) {
+function interpolate(scale, share) {
   const at = Math.min(Math.max(share, 0), 1) * (scale.length - 1), i = Math.min(Math.floor(at), scale.length - 2);
   return [0, 1, 2].map(k => Math.round(scale[i][k] + (at - i) * (scale[i + 1][k] - scale[i][k])));
 }
 
-const viridis = share => between(VIRIDIS, 0.06 + 0.86 * share);
+const viridis = share => interpolate(VIRIDIS, 0.06 + 0.86 * share);
 
-function ofBlock(block) {
+function blockColour(block) {
   const turn = (block * 0.618033988749895) % 1, value = 0.78 + 0.14 * ((block * 0.754877666) % 1);
   return [5, 3, 1].map(shift => {
     const k = (shift + 6 * turn) % 6;
@@ -24,13 +24,14 @@ function ofBlock(block) {
 
 const patches = new Map((facts.patches || []).map(patch => [patch.id, patch]));
 
-function ofPatch(id) {
-  const name = (patches.get(id) || { name: "" }).name;
-  if (id === WALL || patches.size === 0) return PALETTE.wall;
-  if (name.startsWith("inlet")) return PALETTE.inlet;
-  if (name.startsWith("outlet")) return PALETTE.outlet;
-  return OTHERS[Math.abs(id) % OTHERS.length];
+/** Kind of a patch: wall, inlet, outlet or its own name. */
+function patchKind(id) {
+  const { name } = patches.get(id) || { name: `patch ${id}` };
+  if (id === WALL || patches.size === 0) return "wall";
+  return ["inlet", "outlet"].find(kind => name.startsWith(kind)) || name;
 }
+
+const patchColour = id => (Object.hasOwn(PALETTE, patchKind(id)) && PALETTE[patchKind(id)]) || OTHERS[Math.abs(id) % OTHERS.length];
 
 /** Wall as chunks with vertex buffers; each group of faces has a block and a patch. */
 class Walls {
@@ -70,19 +71,19 @@ class Walls {
       radii: Float64Array.from(pieces, r => r / 16 * step), lineNames: Uint32Array.from(lineNames),
       quality: get("quality"), radius: get("radius"), order: get("order") };
     chunk.box = bounds(position, origin, step);
-    const normals = smooth(position, corners);
+    const normals = vertexNormals(position, corners);
     chunk.faces = gl.createVertexArray();
     gl.bindVertexArray(chunk.faces);
     attribute(gl, 0, position, 3, gl.UNSIGNED_SHORT, true);
     attribute(gl, 1, normals, 4, gl.BYTE, true);
     chunk.colours = attribute(gl, 2, new Uint8Array(4 * count), 4, gl.UNSIGNED_BYTE, true);
-    whole(gl, 3, names);
+    integerAttribute(gl, 3, names);
     buffer(gl, corners, gl.ELEMENT_ARRAY_BUFFER);
     chunk.lines = gl.createVertexArray();
     gl.bindVertexArray(chunk.lines);
     attribute(gl, 0, line, 3, gl.UNSIGNED_SHORT, true);
     chunk.lineColours = attribute(gl, 2, new Uint8Array(4 * line.length / 3), 4, gl.UNSIGNED_BYTE, true);
-    whole(gl, 3, chunk.lineNames);
+    integerAttribute(gl, 3, chunk.lineNames);
     gl.bindVertexArray(null);
     return chunk;
   }
@@ -93,13 +94,13 @@ class Walls {
     const most = facts.network ? facts.network.orders : 1;
     const orders = (() => { let m = 1; for (const c of this.chunks) for (const o of c.order) if (o > m) m = o; return m; })();
     const scale = (make, n = 256) => Array.from({ length: n }, (_, i) => make(i));
-    const table = what === "quality" ? scale(q => between(QUALITY, q / 255))
+    const table = what === "quality" ? scale(q => interpolate(QUALITY, q / 255))
       : what === "radius" ? scale(r => viridis((r - 1) / 254))
       : what === "order" ? scale(o => viridis(Math.max(orders, most) > 1 ? (o - 1) / (Math.max(orders, most) - 1) : 0.5)) : null;
     for (const chunk of this.chunks) {
       const of = what === "quality" ? chunk.quality : what === "radius" ? chunk.radius : chunk.order;
-      const ofGroup = name => what === "block" ? ofBlock(this.groups.block[name - 1])
-        : what === "patch" ? ofPatch(this.groups.patch[name - 1]) : PALETTE.wall;
+      const ofGroup = name => what === "block" ? blockColour(this.groups.block[name - 1])
+        : what === "patch" ? patchColour(this.groups.patch[name - 1]) : PALETTE.wall;
       const paint = (names, pick) => {
         const out = new Uint8Array(4 * names.length);
         let last = 0, colour = null;
@@ -127,18 +128,18 @@ class Walls {
   draw(at, view, lined) {
     const gl = this.gl;
     for (const chunk of this.chunks) {
-      if (!view.sees(chunk.box)) continue;
+      if (!view.isVisible(chunk.box)) continue;
       gl.uniform3fv(at.origin, chunk.origin);
       gl.uniform1f(at.size, chunk.size);
-      const wide = lower(chunk.radii, facts.wall.exact && view.haste === 1 ? 0 : 0.6 * view.haste / view.scale);
+      const wide = countAtLeast(chunk.radii, facts.wall.exact && view.coarsening === 1 ? 0 : 0.6 * view.coarsening / view.scale);
       gl.uniform1f(at.flatness, 0);
       gl.bindVertexArray(chunk.faces);
       const end = chunk.ends.faces[wide];
       if (end > 0) gl.drawElements(gl.TRIANGLES, end, gl.UNSIGNED_INT, 0);
-      if (lined && end > 0) this.drawEdges(chunk, end, at);
+      if (lined && end > 0) this.drawEdges(chunk, end, at, view);
       const [from, end_] = [chunk.ends.lines[wide], chunk.ends.lines[chunk.radii.length]];
       // During motion the thinnest pieces are omitted.
-      const to = from + 2 * Math.ceil((end_ - from) / 2 / Math.max(view.haste / 4, 1));
+      const to = from + 2 * Math.ceil((end_ - from) / 2 / Math.max(view.coarsening / 4, 1));
       if (to > from) {
         gl.uniform1f(at.flatness, 2);
         gl.bindVertexArray(chunk.lines);
@@ -147,7 +148,7 @@ class Walls {
     }
   }
 
-  drawEdges(chunk, end, at) {
+  drawEdges(chunk, end, at, view) {
     const gl = this.gl;
     if (!chunk.edges) {
       const edges = new Uint32Array(2 * chunk.corners.length);
@@ -158,22 +159,40 @@ class Walls {
       chunk.edges = gl.createVertexArray();
       gl.bindVertexArray(chunk.edges);
       attribute(gl, 0, chunk.position, 3, gl.UNSIGNED_SHORT, true);
-      gl.vertexAttrib4f(2, 0, 0, 0, 0.35);
+      attribute(gl, 1, meanEdges(chunk), 1, gl.FLOAT, false);
       buffer(gl, edges, gl.ELEMENT_ARRAY_BUFFER);
     }
     gl.bindVertexArray(chunk.edges);
     gl.vertexAttrib4f(2, 0, 0, 0, 0.35);
-    gl.uniform1f(at.flatness, 2);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    gl.drawElements(gl.LINES, 2 * end, gl.UNSIGNED_INT, 0);
-    gl.disable(gl.BLEND);
-    gl.uniform1f(at.flatness, 0);
+    drawFadingLines(gl, at, view, () => gl.drawElements(gl.LINES, 2 * end, gl.UNSIGNED_INT, 0));
   }
 }
 
+/** Draws lines that fade out where edges, whose mean length is attribute 1, are short on the screen. */
+function drawFadingLines(gl, at, view, draw) {
+  gl.uniform1f(at.flatness, 2);
+  gl.uniform1f(at.pixels, view.scale / Math.min(devicePixelRatio || 1, 2));
+  gl.enable(gl.BLEND);
+  gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  draw();
+  gl.disable(gl.BLEND);
+  gl.uniform1f(at.pixels, 0);
+  gl.uniform1f(at.flatness, 0);
+}
+
+/** Mean edge length at each point of a chunk. */
+function meanEdges({ position, corners, size }) {
+  const sum = new Float32Array(position.length / 3), edges = new Uint32Array(sum.length);
+  for (let i = 0; i < corners.length; i++) {
+    const v = corners[i], w = corners[i % 3 === 2 ? i - 2 : i + 1], a = 3 * v, b = 3 * w;
+    const length = Math.hypot(position[b] - position[a], position[b + 1] - position[a + 1], position[b + 2] - position[a + 2]);
+    for (const end of [v, w]) { sum[end] += length; edges[end]++; }
+  }
+  return sum.map((length, v) => length / (edges[v] || 1) * size / 65535);
+}
+
 /** Number of elements that are at least `least`, in a descending array. */
-function lower(numbers, least) {
+function countAtLeast(numbers, least) {
   let [low, high] = [0, numbers.length];
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -189,7 +208,7 @@ function attribute(gl, at, values, size, kind, normalized) {
   return made;
 }
 
-function whole(gl, at, values) {
+function integerAttribute(gl, at, values) {
   buffer(gl, values);
   gl.enableVertexAttribArray(at);
   gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
@@ -208,7 +227,7 @@ function bounds(position, origin, step) {
 }
 
 /** Vertex normals: area-weighted means of the adjacent face normals. */
-function smooth(position, corners) {
+function vertexNormals(position, corners) {
   const sum = new Float32Array(position.length);
   for (let i = 0; i < corners.length; i += 3) {
     const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
@@ -255,10 +274,10 @@ class Network {
   }
 
   /** Description of a point on an edge: branch, order, nodes, radius. */
-  told({ edge, t, radius }) {
+  describe({ edge, t, radius }) {
     const ends = [0, 1].map(k => this.names[this.edges[2 * edge + k]]);
     return `vessel (branch) ${this.branches[edge]}, order ${this.orders[edge]}\nedge ${ends[0]}–${ends[1]}, nearest node ` +
-      `${ends[t > 0.5 ? 1 : 0]}\nradius ${number(radius)}`;
+      `${ends[t > 0.5 ? 1 : 0]}\nradius ${withUnit(number(radius))}`;
   }
 }
 
@@ -290,7 +309,7 @@ class Cones {
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 16, 0);
     this.lineColours = attribute(gl, 2, new Uint8Array(8 * count), 4, gl.UNSIGNED_BYTE, true);
-    whole(gl, 3, Uint32Array.from({ length: 2 * count }, (_, i) => names[i >> 1]));
+    integerAttribute(gl, 3, Uint32Array.from({ length: 2 * count }, (_, i) => names[i >> 1]));
     gl.bindVertexArray(null);
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     network.nodes.forEach((x, i) => {
@@ -342,7 +361,7 @@ class Cones {
       const radius = (network.radii[2 * e] + network.radii[2 * e + 1]) / 2;
       const colour = what === "radius" ? viridis(high > low ? Math.log(radius / low) / Math.log(high / low) : 0.5)
         : what === "order" ? viridis(most > 1 ? (network.orders[e] - 1) / (most - 1) : 0.5)
-        : what === "block" ? ofBlock(network.branches[e]) : PALETTE.wall;
+        : what === "block" ? blockColour(network.branches[e]) : PALETTE.wall;
       out.set(colour, 4 * i);
       out[4 * i + 3] = 255;
     });
@@ -356,7 +375,7 @@ class Cones {
   /** Draws cones by decreasing number of sides, and the thinnest as lines. */
   draw(programs, set, view) {
     const gl = this.gl;
-    const [near, middle, far] = [6, 2.5, 0.8].map(pixels => lower(this.radii, pixels * view.haste / view.scale));
+    const [near, middle, far] = [6, 2.5, 0.8].map(pixels => countAtLeast(this.radii, pixels * view.coarsening / view.scale));
     set(programs.cones);
     gl.uniform1f(programs.cones.at.thinnest, 0);
     [[0, near], [near, middle], [middle, far]].forEach(([from, to], i) => {
@@ -372,12 +391,12 @@ class Cones {
       gl.uniform1f(at.flatness, 2);
       gl.bindVertexArray(this.lines);
       // During motion the thinnest lines are omitted.
-      gl.drawArrays(gl.LINES, 2 * far, 2 * Math.ceil((this.radii.length - far) / Math.max(view.haste / 4, 1)));
+      gl.drawArrays(gl.LINES, 2 * far, 2 * Math.ceil((this.radii.length - far) / Math.max(view.coarsening / 4, 1)));
     }
   }
 }
 
-/** Formats a number with up to five significant digits. */
-function number(x) {
-  return Math.abs(x) >= 1e6 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(3) : String(Number(x.toPrecision(5)));
+/** Formats a number with up to this number of significant digits. */
+function number(x, digits = 5) {
+  return Math.abs(x) >= 1e6 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(Math.min(digits, 4) - 1) : String(Number(x.toPrecision(digits)));
 }

@@ -118,7 +118,7 @@ fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh
     };
     args.report.write(&args.input, Some(verdict), plan, |page| {
         page.add(Section::new("Summary").folded("Terminal output", &report.text(true, &common::ended(&[]))));
-        page.add(Section::new("At a glance").pictures(&page::mesh_pictures(mesh)?, false)?);
+        page.add(Section::new("Overview").pictures(&page::mesh_pictures(mesh)?, false)?);
         if let Some(quality) = &report.quality {
             page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
         }

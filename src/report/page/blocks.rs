@@ -1,5 +1,6 @@
 //! Blocks of a run: sizes, times, retries, failures.
 
+use super::figures::{LengthUnit, figure};
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use super::shape::bars;
@@ -40,11 +41,11 @@ pub fn block_sizes(mesh: &dyn MeshSource) -> io::Result<Vec<u64>> {
 ///
 /// # Errors
 /// A picture cannot be compressed.
-pub fn failed_blocks(network: &Skeleton, run: &RunReport) -> io::Result<Section> {
+pub fn failed_blocks(network: &Skeleton, run: &RunReport, unit: LengthUnit) -> io::Result<Section> {
     let nodes: BTreeSet<u32> = run.failed.iter().flat_map(|failed| failed.nodes.iter().copied()).collect();
     let is_marked = |&id: &EdgeId| network.edge(id).nodes.iter().any(|&n| nodes.contains(&network.node(n).original));
     let marked: Vec<EdgeId> = network.edge_ids().filter(is_marked).collect();
-    let picture = network_picture(network, &marked, "Vessels of failed blocks (red).");
+    let picture = network_picture(network, &marked, "Vessels of failed blocks (red)", unit);
     Section::new("Failed blocks").pictures(&[picture], false)
 }
 
@@ -53,20 +54,21 @@ pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
     let (blocks, times) = (&run.blocks, &run.block_times);
     let seconds: f64 = run.stages.iter().map(|stage| stage.seconds).sum();
     let stages: Vec<Vec<String>> =
-        run.stages.iter().map(|stage| vec![stage.stage.to_owned(), format!("{:.2} s", stage.seconds)]).collect();
+        run.stages.iter().map(|stage| vec![stage.stage.to_owned(), format!("{} s", figure(stage.seconds))]).collect();
     let section = Section::new("Blocks and times")
         .tiles(&[
             ("clusters", grouped(blocks.clusters)),
             ("connectors", grouped(blocks.connectors)),
             ("largest cluster", counted(blocks.largest_cluster_nodes, "node")),
-            ("retried, failed", format!("{}, {}", run.retries.len(), run.failed.len())),
-            ("longest block", format!("{} ({:.2} s)", times.longest, times.longest_seconds)),
-            ("all stages", format!("{seconds:.1} s")),
+            ("retried blocks", grouped(run.retries.len())),
+            ("failed blocks", grouped(run.failed.len())),
+            ("longest block", format!("{} ({} s)", times.longest, figure(times.longest_seconds))),
+            ("all stages", format!("{} s", figure(seconds))),
         ])
         .plots(&[
-            powers("Sizes of blocks", "tetrahedra, 2 to the power of", sizes, 0.0),
+            powers("Sizes of blocks", "tetrahedra (log₂)", sizes, 0.0),
             // The first bin ends just below one millisecond.
-            powers("Times of blocks", "milliseconds, 2 to the power of", &times.histogram, -1.0),
+            powers("Times of blocks", "milliseconds (log₂)", &times.histogram, -1.0),
         ])
         .table(&["stage", "wall time"], &stages);
     let trouble = trouble(run);

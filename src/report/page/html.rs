@@ -1,6 +1,8 @@
 //! HTML page of sections with escaped text.
 
-use crate::picture::Image;
+use super::escape::escaped;
+use super::legend::Legend;
+use super::pictures::Picture;
 use crate::report::plot::{Panel, svg};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -8,24 +10,6 @@ use std::fmt::{Display, Write as _};
 use std::io;
 
 const STYLE: &str = include_str!("style.css");
-
-/// Escapes text for HTML, including attributes.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            // Control characters are not allowed in a page.
-            c if c.is_control() && c != '\n' => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
-}
 
 /// Part of a page under a heading.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +26,12 @@ impl Section {
     /// Adds a paragraph.
     pub fn text(mut self, text: &str) -> Self {
         let _ = writeln!(self.body, "<p>{}</p>", escaped(text));
+        self
+    }
+
+    /// Adds a command line.
+    pub fn command(mut self, text: &str) -> Self {
+        let _ = writeln!(self.body, "<pre><code>{}</code></pre>", escaped(text));
         self
     }
 
@@ -76,8 +66,9 @@ impl Section {
         for row in rows {
             self.body.push_str("<tr>");
             for cell in row {
-                let class =
-                    if cell.starts_with(|c: char| c.is_ascii_digit() || c == '-') { " class=\"n\"" } else { "" };
+                let is_number = cell.trim_start_matches(['-', '−']).starts_with(|c: char| c.is_ascii_digit())
+                    && !cell.starts_with("--");
+                let class = if is_number { " class=\"n\"" } else { "" };
                 let _ = write!(self.body, "<td{class}>{}</td>", escaped(cell));
             }
             self.body.push_str("</tr>\n");
@@ -95,24 +86,25 @@ impl Section {
         self
     }
 
-    /// Adds captioned pictures side by side; with `aimed`, a ring marks the centre.
+    /// Adds pictures side by side, with captions and legends; with `aimed`, a ring marks the centre.
     ///
     /// # Errors
     /// A picture cannot be compressed, which happens only if memory is insufficient.
-    pub fn pictures(mut self, pictures: &[(Image, String)], aimed: bool) -> io::Result<Self> {
+    pub fn pictures(mut self, pictures: &[Picture], aimed: bool) -> io::Result<Self> {
         let class = if aimed { "pictures aimed" } else { "pictures" };
         let _ = writeln!(self.body, "<div class=\"{class}\">");
-        for (image, caption) in pictures {
+        for Picture { image, caption, legend } in pictures {
             let mut png = Vec::new();
             image.write_png(&mut png)?;
             let caption = escaped(caption);
             let _ = writeln!(
                 self.body,
                 "<figure><span><img alt=\"{caption}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\"></span>\
-                 <figcaption>{caption}</figcaption></figure>",
+                 {}<figcaption>{caption}</figcaption></figure>",
                 image.width,
                 image.height,
-                STANDARD.encode(png)
+                STANDARD.encode(png),
+                legend.as_ref().map_or_else(String::new, Legend::html)
             );
         }
         self.body.push_str("</div>\n");

@@ -1,8 +1,10 @@
 //! Networks: overlaps before and after refinement.
 
+use super::figures::LengthUnit;
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use crate::report::refine::panels;
+use anastomesh_mesh::units::{counted, grouped};
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
@@ -11,7 +13,7 @@ use std::io;
 pub fn overlaps_left(report: &RefineReport) -> (Mark, String) {
     match report.result.overlaps {
         0 => (Mark::Good, "no vessels overlap".into()),
-        n => (Mark::Bad, format!("{n} pairs of edges overlap")),
+        n => (Mark::Bad, format!("{} of edges overlap", counted(n, "pair"))),
     }
 }
 
@@ -28,21 +30,20 @@ fn overlaps(network: &Skeleton) -> Vec<EdgeId> {
 ///
 /// # Errors
 /// A picture cannot be compressed.
-pub fn refinement(report: &RefineReport, before: &Skeleton, after: &Skeleton) -> io::Result<Section> {
+pub fn refinement(report: &RefineReport, before: &Skeleton, after: &Skeleton, unit: LengthUnit) -> io::Result<Section> {
     let picture = |network, when: &str, pairs: usize| {
-        let caption = format!("{when}: {pairs} pairs of edges overlap (red).");
-        network_picture(network, &overlaps(network), &caption)
+        let caption = format!("{when}: {} of overlapping edges (red)", counted(pairs, "pair"));
+        network_picture(network, &overlaps(network), &caption, unit)
     };
-    let pictures =
-        [picture(before, "As given", report.given.overlaps), picture(after, "Refined", report.result.overlaps)];
+    let pictures = [picture(before, "Before", report.given.overlaps), picture(after, "After", report.result.overlaps)];
     let d = &report.displacement;
     Ok(Section::new("Refinement")
         .tiles(&[
-            ("overlapping pairs, given", report.given.overlaps.to_string()),
-            ("in the end", report.result.overlaps.to_string()),
-            ("nodes moved by, mean", format!("{:.4}", d.mean)),
-            ("99 %, furthest", format!("{:.4}, {:.4}", d.p99, d.max)),
-            ("a median radius is", format!("{:.4}", 0.448 * report.unit)),
+            ("overlapping pairs before", grouped(report.given.overlaps)),
+            ("overlapping pairs after", grouped(report.result.overlaps)),
+            ("mean node displacement", unit.length(d.mean)),
+            ("displacement, 99th percentile and max", format!("{} and {}", unit.length(d.p99), unit.length(d.max))),
+            ("median radius", unit.length(0.448 * report.unit)),
         ])
         .pictures(&pictures, false)?
         .table(&["", "given", "split", "moved", "result"], &report.figures_table())

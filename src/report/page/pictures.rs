@@ -3,34 +3,50 @@
 use crate::picture::{
     Background, Camera, Canvas, Colour, Direction, Image, MeshPicture, NetworkPicture, Opening, Plane,
 };
+use anastomesh_mesh::check::text::describe;
 use anastomesh_mesh::check::{CheckReport, Offender, OffenderKind};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
+use super::figures::LengthUnit;
+use super::legend::Legend;
 use super::places::extents;
 
 const SIZE: [usize; 2] = [720, 540];
 const SAMPLES: usize = 2;
 /// Minimum zoom for close-ups of tetrahedra.
 const CLOSER: f64 = 3.0;
+/// Depths of the plane of a close-up below a point of the wall, as fractions of the picture.
+const CLOSE_UP_DEPTHS: [f64; 3] = [0.15, 0.05, 0.0];
 /// Maximum number of pictured offenders, and number of candidates: one of several neighbours is enough.
 const SHOWN: usize = 6;
 const CANDIDATES: usize = 24;
 /// Minimum distance between pictured offenders, as a fraction of the picture.
 const BESIDE: f64 = 0.5;
 
+/// Picture with its caption and legend.
+#[derive(Debug)]
+pub struct Picture {
+    pub image: Image,
+    pub caption: String,
+    pub legend: Option<Legend>,
+}
+
 /// Pictures of a mesh: the whole, its blocks if there are several, and some tetrahedra.
 ///
 /// # Errors
 /// The mesh cannot be read.
-pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
+pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<Picture>> {
     let outline = MeshPicture::outline(mesh)?;
     let size = SIZE.map(|n| n * SAMPLES);
     let camera = Camera::new(Direction::Broadside, &outline, size, 1.0, None);
+    let image = draw(mesh, camera, Colour::Patch, None)?;
+    // Other patches than those of a network have colours by number.
+    let has_kinds = mesh.patches().iter().any(|patch| patch.is_inlet() || patch.is_outlet());
     let mut pictures =
-        vec![(draw(mesh, camera, Colour::Patch, None)?, "The mesh: wall red, inlets blue, outlets yellow.".to_owned())];
+        vec![Picture { image, caption: "Mesh by boundary patch".into(), legend: has_kinds.then(Legend::patches) }];
     if mesh.counts().tets == 0 {
         return Ok(pictures);
     }
@@ -41,29 +57,42 @@ pub fn mesh_pictures(mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> 
     let extent = extents(mesh, &[place])?[0];
     let zoom = (outline.range(camera.towards)[1] - outline.range(camera.towards)[0]).max(extent) / extent;
     let close = Camera::new(Direction::Broadside, &outline, size, zoom.max(CLOSER), Some(place));
-    let cut = Plane { normal: close.towards, offset: place.coords.dot(&close.towards) - 0.15 * extent };
-    pictures.push((
-        draw(mesh, close, Colour::Quality, Some(Opening::Tets(cut)))?,
-        "Some of its tetrahedra by their radius ratio, from red (0) to blue (1).".to_owned(),
-    ));
+    // Behind the point at the wall, unless the vessel is thinner than that.
+    let mut image = None;
+    for depth in CLOSE_UP_DEPTHS {
+        let cut = Plane { normal: close.towards, offset: place.coords.dot(&close.towards) - depth * extent };
+        let drawn = draw(mesh, close, Colour::Quality, Some(Opening::Tets(cut)))?;
+        let is_empty = drawn.pixels.iter().all(|pixel| pixel[3] == 0);
+        image = Some(drawn);
+        if !is_empty {
+            break;
+        }
+    }
+    let Some(image) = image else { return Ok(pictures) };
+    pictures.push(Picture {
+        image,
+        caption: "Close-up of tetrahedra by radius ratio".into(),
+        legend: Some(Legend::quality()),
+    });
     Ok(pictures)
 }
 
 /// Picture of a network with some edges highlighted.
-pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str) -> (Image, String) {
+pub fn network_picture(network: &Skeleton, marked: &[EdgeId], caption: &str, unit: LengthUnit) -> Picture {
     let mut picture = NetworkPicture::by_radius(network);
     picture.mark(marked);
     let camera = Camera::new(Direction::Broadside, &picture.outline(), SIZE.map(|n| n * SAMPLES), 1.0, None);
     let mut canvas = Canvas::new(camera, SAMPLES);
     picture.draw(&mut canvas);
-    (canvas.finish(Background::None), caption.to_owned())
+    let legend = picture.shown().legend.as_ref().map(|scale| Legend::radius(scale, unit));
+    Picture { image: canvas.finish(Background::None), caption: caption.into(), legend }
 }
 
 /// Pictures of the first offenders of failed lines.
 ///
 /// # Errors
 /// The mesh cannot be read.
-pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(Image, String)>> {
+pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<Picture>> {
     // The first of each line comes before the second of any.
     let mut found: Vec<(usize, &Offender, &'static str, Point3)> = Vec::new();
     for line in check.failed() {
@@ -93,8 +122,8 @@ pub fn offenders(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Vec<(
             _ => Opening::Wall(Plane { normal: camera.towards, offset: at + 0.4 * extent }),
         };
         let image = draw(mesh, camera, Colour::Patch, Some(cut))?;
-        let [x, y, z]: [f64; 3] = place.into();
-        pictures.push((image, format!("Failed: {statement} (circled, at {x:.6} {y:.6} {z:.6})")));
+        let caption = format!("Failed: {statement}: {} (circled)", describe(offender));
+        pictures.push(Picture { image, caption, legend: None });
     }
     Ok(pictures)
 }

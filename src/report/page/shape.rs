@@ -1,5 +1,6 @@
 //! Quality of the tetrahedra, and radius error of the wall.
 
+use super::figures::{figure, relative};
 use super::html::Section;
 use crate::fidelity::{Along, Fidelity};
 use crate::report::plot::{Panel, Series};
@@ -23,11 +24,11 @@ pub fn quality(quality: &TetQuality, dihedral: &DihedralHistogram) -> Section {
     );
     Section::new("Shape of the tetrahedra")
         .tiles(&[
-            ("mean radius ratio", format!("{:.4}", quality.mean)),
-            ("1st percentile", format!("{:.4}", quality.percentile_1)),
-            ("smallest", format!("{:.4}", quality.min)),
-            ("smallest dihedral angle", format!("{:.2}°", quality.dihedral_min)),
-            ("largest dihedral angle", format!("{:.2}°", quality.dihedral_max)),
+            ("mean radius ratio", figure(quality.mean)),
+            ("1st percentile of radius ratio", figure(quality.percentile_1)),
+            ("min radius ratio", figure(quality.min)),
+            ("min dihedral angle", format!("{:.1}°", quality.dihedral_min)),
+            ("max dihedral angle", format!("{:.1}°", quality.dihedral_max)),
         ])
         .plots(&[ratios, angles])
 }
@@ -52,22 +53,22 @@ pub fn fidelity(fidelity: &Fidelity, along: &Along) -> Section {
         points: along.bins.iter().filter_map(|bin| Some([bin.share, 100.0 * bin.quantiles?[k]])).collect(),
     };
     let plot = Panel {
-        title: "Radius error along vessels, as they were meshed".into(),
-        axes: ["place along the vessel (0 and 1: its ends)".into(), "wall from the given radius (%)".into()],
+        title: "Radius error along vessels".into(),
+        axes: ["position along the vessel (0 and 1: its ends)".into(), "radius error (%)".into()],
         logarithmic: false,
         bars: None,
         series: vec![line("95 %", 2), line("median", 1), line("5 %", 0)],
     };
     let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
     let mut tiles = vec![
-        ("axis off the given one, median", format!("{:.4} radii", axis.median)),
-        ("99 %, at most", format!("{:.3}, {:.3} radii", axis.p99, axis.worst)),
+        ("median axis error", format!("{} radii", relative(axis.median))),
+        ("axis error, 99th percentile and max", format!("{} and {} radii", relative(axis.p99), relative(axis.worst))),
     ];
     // Only for unmoved vessels: otherwise it would look like a wall error, as the plot uses the meshed vessels.
     if !fidelity.is_moved() {
-        tiles.push(("wall off the radius, median", format!("{:.2} %", 100.0 * wall.median)));
-        tiles.push(("99 %", format!("{:.1} %", 100.0 * wall.p99)));
+        tiles.push(("median radius error", format!("{} %", figure(100.0 * wall.median))));
+        tiles.push(("radius error, 99th percentile", format!("{} %", figure(100.0 * wall.p99))));
     }
-    tiles.push(("volume against the given lumen", format!("{:+.2} %", 100.0 * fidelity.swelling())));
-    Section::new("The network in the mesh").tiles(&tiles).plots(&[plot])
+    tiles.push(("volume relative to the network", format!("{:+.2} %", 100.0 * fidelity.swelling())));
+    Section::new("Accuracy against the network").tiles(&tiles).plots(&[plot])
 }

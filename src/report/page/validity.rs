@@ -1,5 +1,6 @@
 //! Results of a validity check, line by line.
 
+use super::figures::{LengthUnit, figure};
 use super::html::{Mark, Section};
 use super::pictures::offenders;
 use anastomesh_mesh::check::text::{describe, reason, verdict, violation};
@@ -22,7 +23,7 @@ pub fn headline(check: &CheckReport) -> (Mark, String) {
 }
 
 /// Sizes of the checked mesh.
-pub fn summary(check: &CheckReport) -> Section {
+pub fn summary(check: &CheckReport, unit: LengthUnit) -> Section {
     let counts = &check.counts;
     let mut tiles = vec![
         ("tetrahedra", grouped(counts.tets)),
@@ -30,12 +31,21 @@ pub fn summary(check: &CheckReport) -> Section {
         ("boundary faces", grouped(counts.boundary_faces)),
         ("inlets and outlets", grouped(counts.caps)),
         ("components", grouped(counts.components)),
-        ("volume", format!("{:.6e}", counts.volume)),
+        ("volume", unit.volume(counts.volume)),
     ];
     if let Some(quality) = &check.quality {
-        tiles.push(("mean radius ratio", format!("{:.4}", quality.mean)));
+        tiles.push(("mean radius ratio", figure(quality.mean)));
     }
     Section::new("Summary").tiles(&tiles)
+}
+
+/// Options that may help after a failed run.
+pub fn advice(lines: &[String]) -> Section {
+    let section = Section::new("What may help");
+    if lines.is_empty() {
+        return section;
+    }
+    section.list(&lines.iter().map(|line| (Mark::Neither, line.clone())).collect::<Vec<_>>())
 }
 
 /// Result of each line of the validity definition, with pictures of violations.
@@ -54,7 +64,7 @@ pub fn validity(check: &CheckReport, mesh: &dyn MeshSource) -> io::Result<Sectio
         items.extend(line.offenders.iter().take(LISTED).map(|o| (Mark::Below, describe(o))));
         let hidden = line.count.saturating_sub(line.offenders.len().min(LISTED) as u64);
         if hidden > 0 {
-            items.push((Mark::Below, format!("and {hidden} more")));
+            items.push((Mark::Below, format!("and {} more", grouped(hidden as usize))));
         }
     }
     let section = Section::new("Validity").list(&items);

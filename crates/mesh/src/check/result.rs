@@ -2,7 +2,7 @@
 
 use crate::geometry::Point3;
 use crate::quality::TetQuality;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Requirements on a mesh, known from its network.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -256,8 +256,14 @@ impl Offender {
     }
 }
 
-/// Maximum offenders kept per condition.
-pub const KEPT_OFFENDERS: usize = 10;
+/// Maximum offenders kept per condition, so that a viewer can show each. 1,000 take about 0.1 MB.
+pub const KEPT_OFFENDERS: usize = 1000;
+/// Maximum offenders per condition in JSON and in text.
+pub(super) const PRINTED_OFFENDERS: usize = 10;
+
+fn first_offenders<S: Serializer>(offenders: &[Offender], serializer: S) -> Result<S::Ok, S::Error> {
+    offenders[..offenders.len().min(PRINTED_OFFENDERS)].serialize(serializer)
+}
 
 /// Result of one line of the check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -268,7 +274,8 @@ pub struct LineResult {
     pub outcome: Outcome,
     /// Number of offenders.
     pub count: u64,
-    /// First offenders.
+    /// First offenders, up to 1,000; JSON has up to 10.
+    #[serde(serialize_with = "first_offenders")]
     pub offenders: Vec<Offender>,
     /// Expected values, ascending, for conditions that compare.
     #[serde(skip_serializing_if = "Option::is_none")]

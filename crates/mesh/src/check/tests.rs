@@ -1,6 +1,6 @@
 //! Every condition fails on a mesh with its fault planted, and none on a valid one.
 
-use super::result::KEPT_OFFENDERS;
+use super::result::{KEPT_OFFENDERS, PRINTED_OFFENDERS};
 use super::*;
 use crate::adjacency::boundary_faces;
 use crate::geometry::{Point3, Vec3};
@@ -330,14 +330,18 @@ fn caps_that_are_no_discs() {
 }
 
 #[test]
-fn only_the_first_offenders_are_kept() {
+fn only_the_first_offenders_are_kept_and_fewer_are_printed() {
     let (mut volume, expectation) = tube();
     for t in &mut volume.mesh.tets {
         t.swap(0, 1);
     }
     let report = check_volume(&volume, Some(&expectation));
     let line = report.line(Line::PositiveTets).unwrap();
-    assert_eq!((line.count as usize, line.offenders.len()), (volume.mesh.tets.len(), KEPT_OFFENDERS));
+    let all = volume.mesh.tets.len();
+    assert_eq!((line.count as usize, line.offenders.len()), (all, all.min(KEPT_OFFENDERS)));
+    let json = serde_json::to_value(line).unwrap();
+    assert_eq!(json["offenders"].as_array().unwrap().len(), PRINTED_OFFENDERS);
+    assert_eq!(report.to_string().matches("         tetrahedron ").count(), PRINTED_OFFENDERS);
     assert_eq!(line.offenders[3].ids, [3]);
     assert!(failing(&volume, &expectation).contains(&Line::PositiveTets));
 }

@@ -1,5 +1,6 @@
 //! Text form of a check's result; its JSON form is `CheckReport` itself.
 
+use super::result::PRINTED_OFFENDERS;
 use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
 use crate::units::{counted, digits, grouped, place, tetrahedra};
 use std::fmt::{self, Write as _};
@@ -91,10 +92,11 @@ pub fn conditions(check: &CheckReport) -> String {
             Outcome::NotChecked(why) => writeln!(out, "  -    {statement}: skipped, because {}", reason(why)),
             Outcome::Fail => writeln!(out, "  FAIL {}", violation(line)),
         };
-        for offender in &line.offenders {
+        let shown = line.offenders.len().min(PRINTED_OFFENDERS);
+        for offender in &line.offenders[..shown] {
             let _ = writeln!(out, "         {}", describe(offender));
         }
-        let hidden = line.count - line.offenders.len() as u64;
+        let hidden = line.count - shown as u64;
         if hidden > 0 {
             let _ = writeln!(out, "         and {} more", grouped(hidden as usize));
         }
