@@ -139,7 +139,7 @@ impl<'a> Faces<'a> {
         Ok(Self { mesh, first, known: joined(&loose)? })
     }
 
-    /// Opposite side of a face not paired within its part. `None` if the lower tetrahedron, which stores it, is there.
+    /// Opposite side of a face not paired within its part. `None` if the lower tetrahedron stores it.
     fn other_side(&self, sorted: &Sorted, first: u32, handle: u32) -> Option<Side> {
         let at = (first + (handle >> 2), face_key(face_of(&sorted.tets, handle)));
         let place = self.known.binary_search_by_key(&at, |&(tet, key, _)| (tet, key)).ok()?;

@@ -95,7 +95,7 @@ mod tests {
             let error = is_taken("there".as_ref(), Err(TryLockError::Error(kind.into()))).expect_err("no locks");
             assert!(matches!(error, StoreError::NoLocks { .. }));
             assert!(
-                error.to_string().starts_with("there: the file system of this work directory has no locks"),
+                error.to_string().starts_with("there: the file system of this work directory has no file locks"),
                 "{error}"
             );
         }

@@ -213,7 +213,7 @@ fn amira_and_the_solver_say_where() {
     let solver = |from: &str, to: &str, what: &str| says(SV1D, NetworkFormat::Sv1d, from, to, what);
     solver("NODE 3 0", "NODE 3 zero", "line 6: expected coordinate x, found 'zero'");
     solver("NODE 3", "NODE 2", "line 6: duplicate node '2'");
-    solver("OUT0 2 1 2", "OUT0 2 1 7", "line 9: segment '7'");
+    solver("OUT0 2 1 2", "OUT0 2 1 7", "line 9: unknown segment '7'");
     solver("OUT0 2 1 2", "OUT0 99999999 1 2", "line 9");
     solver("JOINTOUTLET OUT0", "JOINTOUTLET OUT1", "line 7");
     solver("25 1 2", "25 1 9", "node '9'");

@@ -130,7 +130,7 @@ fn an_array_of_nodes_is_kept_when_it_is_asked_for() {
     assert!(read(None).unwrap().node_values.is_empty());
     let said = |array| read(Some(array)).unwrap_err().to_string();
     assert!(
-        said("Length").contains("no array 'Length' on the nodes; there are: Radius, Size, Way, Short"),
+        said("Length").contains("no node array 'Length'; node arrays: Radius, Size, Way, Short"),
         "{}",
         said("Length")
     );

@@ -120,7 +120,7 @@ impl<'a> Boundary<'a> {
         })
     }
 
-    /// Finds faces that intersect improperly. If the boundary is closed and there are none, finds nested surfaces.
+    /// Finds faces that intersect improperly. If the boundary is closed and no faces intersect, finds nested surfaces.
     pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
         let mut tally = Tally::new(Line::NoSelfIntersection);
         let contacts = contacts_with(self.points, self.faces, &self.fans);

@@ -92,7 +92,7 @@ fn neighbors(triangles: &[[u32; 3]], corner: u32) -> [u32; 2] {
 }
 
 /// Sorts the triangles of a vertex so that each starts at the end of the previous one, the first at the end of the last.
-/// Returns false if this fails, and for very small and very large fans.
+/// Returns false if this fails, and for fans with too few or too many triangles.
 fn sort_around(fan: &mut [[u32; 2]]) -> bool {
     if fan.len() < 3 || fan.len() > MOST {
         return false;

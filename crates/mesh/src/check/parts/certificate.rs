@@ -1,4 +1,4 @@
-//! What is known of one part once it has been checked alone.
+//! Certificate of one part, checked by itself.
 
 use super::sums::{face_sum, point_sum};
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
@@ -20,7 +20,7 @@ use std::iter;
 /// Pairs of faces that meet improperly which a certificate keeps.
 const KEPT_INTERSECTIONS: usize = 100;
 
-/// What owns a boundary face.
+/// Owner of a boundary face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Owner {
     Wall,
@@ -130,7 +130,7 @@ impl Certificate {
         self.hold_caps(part);
     }
 
-    /// The same where there is nothing else. What one surface encloses is one component.
+    /// Checks a part that has faces only. Each outer surface encloses one component.
     fn look_at_hull(&mut self, part: &PartView, faces: &[[u32; 3]]) {
         let (owners, surfaces) = self.look_at_faces(part, faces);
         let enclosed = enclosed(&part.mesh.points, faces, &surfaces);
@@ -141,7 +141,7 @@ impl Certificate {
         self.hold_caps(part);
     }
 
-    /// Who owns each face, and which surface it belongs to.
+    /// Checks the boundary faces. Returns the owner and the surface of each.
     fn look_at_faces(&mut self, part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, Surfaces) {
         let points = &part.mesh.points[..];
         let (owners, labels) = owners(part, faces);
@@ -289,7 +289,7 @@ fn is_connected(adjacency: &TetAdjacency) -> bool {
     left == 0
 }
 
-/// Who owns each boundary face. Faces of joints and caps must be boundary faces, turned as they are, each named once.
+/// Returns the owner of each boundary face. Faces of joints and caps must be boundary faces, turned as they are, each named once.
 fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let points = &part.mesh.points;
     let mut named: Vec<([u32; 3], Owner, [u32; 3])> = Vec::new();
