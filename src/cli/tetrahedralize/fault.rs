@@ -84,10 +84,8 @@ fn remedy(error: &TetError) -> Option<&'static str> {
     Some(match error {
         TetError::Empty { .. } | TetError::Flat => "give at least four points that are not coplanar",
         TetError::OutOfRange { .. } => "scale or shift the input",
-        TetError::DuplicatePoints { .. } => "merge them, or give --repair",
-        TetError::BadTriangle { .. } => "remove them, or give --repair",
-        TetError::DuplicateTriangles { .. } => "remove them, or give --repair",
-        TetError::NotShared { .. } => "merge them, or give --repair",
+        TetError::DuplicatePoints { .. } | TetError::NotShared { .. } => "merge them, or give --repair",
+        TetError::BadTriangle { .. } | TetError::DuplicateTriangles { .. } => "remove them, or give --repair",
         TetError::FlatTriangle { .. } => "remove them in the program that wrote the surface",
         TetError::Open { .. } => "close the holes, or give --plc to keep open facets",
         TetError::NotManifold { .. } => "separate the sheets, or give --plc to allow interior facets",
