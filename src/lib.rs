@@ -30,6 +30,9 @@
 //! Features, both on by default: `cli` is the program; `woven` is the joint style of the paper
 //! ([`meshing::JointStyle`]).
 
+// Blocks with trimmed ends are used by woven joints only.
+#![cfg_attr(not(feature = "woven"), allow(dead_code, unused_imports))]
+
 mod block;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -106,6 +109,7 @@ pub mod testing {
     pub use crate::partition::{
         BranchPiece, Cut, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
     };
+    #[cfg(feature = "cli")]
     pub use crate::report::info::{Quartiles, UnitGuess};
     pub use crate::surface::{CapError, CapFailure, SharedDisc, SurfaceError};
     pub use anastomesh_io::network::{

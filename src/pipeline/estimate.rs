@@ -77,7 +77,7 @@ impl Estimate {
     }
 
     /// Of one block.
-    pub(crate) fn of_dump(dump: &BlockDump) -> Self {
+    pub fn of_dump(dump: &BlockDump) -> Self {
         let BlockParams { rho, voxel_factor, follow, .. } = dump.params;
         let plan = MeshPlan { rho: rho / voxel_factor, follow, ..MeshPlan::default() };
         let cost = match &dump.input {

@@ -35,7 +35,7 @@ impl Shard {
     ///
     /// # Errors
     /// When there is no such share.
-    pub(crate) fn new(number: u32, of: u32) -> Result<Self, NoShard> {
+    pub fn new(number: u32, of: u32) -> Result<Self, NoShard> {
         match () {
             () if !(1..=MOST).contains(&of) => Err(NoShard::Count(of)),
             () if !(1..=of).contains(&number) => Err(NoShard::Range(number, of)),
