@@ -29,12 +29,12 @@ pub struct Dual {
 /// Networks with loops are allowed: every vessel gets a companion. The root of a component is its thickest terminal.
 ///
 /// ```
-/// use anastomesh::testing::{GenerateParams, Organ, dual, generate};
+/// use anastomesh_network::{GenerateParams, Organ, dual, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
 /// let both = dual(&tree);
 /// assert_eq!(both.tree.iter().filter(|&&of| of == 2).count(), 20);
-/// # Ok::<(), anastomesh::testing::GenerateError>(())
+/// # Ok::<(), anastomesh_network::GenerateError>(())
 /// ```
 pub fn dual(skeleton: &Skeleton) -> Dual {
     let adjacency = skeleton.adjacency();

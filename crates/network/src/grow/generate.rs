@@ -54,12 +54,12 @@ impl GenerateParams {
 /// edge has one radius, a node that of its incoming vessel. The number of threads has no influence.
 ///
 /// ```
-/// use anastomesh::testing::{GenerateParams, Organ, generate};
+/// use anastomesh_network::{GenerateParams, Organ, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Ellipsoid, 50))?;
 /// assert_eq!((tree.nodes.len(), tree.edges.len()), (100, 99));
 /// assert_eq!(tree.adjacency().terminals().len(), 51);
-/// # Ok::<(), anastomesh::testing::GenerateError>(())
+/// # Ok::<(), anastomesh_network::GenerateError>(())
 /// ```
 ///
 /// # Errors

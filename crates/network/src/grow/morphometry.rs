@@ -56,12 +56,12 @@ pub struct OrderFigures {
 /// Morphometry of a tree by Strahler order.
 ///
 /// ```
-/// use anastomesh::testing::{GenerateParams, Morphometry, Organ, generate};
+/// use anastomesh_network::{GenerateParams, Morphometry, Organ, generate};
 ///
 /// let tree = generate(&GenerateParams::new(Organ::Kidney, 50))?;
 /// let orders = Morphometry::of(&tree).orders;
 /// assert!(orders.len() > 2 && orders[0].count > orders[1].count);
-/// # Ok::<(), anastomesh::testing::GenerateError>(())
+/// # Ok::<(), anastomesh_network::GenerateError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Morphometry {

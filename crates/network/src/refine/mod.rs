@@ -109,11 +109,9 @@ pub struct RefineReport {
 /// The result depends only on the arguments, and not on the unit of length. Memory is linear in the number of edges.
 ///
 /// ```
-/// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::network::{RefineParams, clean, refine};
+/// use anastomesh_network::{GenerateParams, Organ, RefineParams, generate, refine};
 ///
-/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
-/// let (network, _) = clean(&file.skeleton)?;
+/// let network = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
 /// let refined = refine(&network, &RefineParams::default(), &())?;
 /// assert_eq!(refined.report.result.overlaps, 0);
 /// assert_eq!(refined.origin.len(), refined.skeleton.nodes.len());
