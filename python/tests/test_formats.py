@@ -57,7 +57,7 @@ def test_numpy_alone_reads_and_writes_a_mesh(mesh: Mesh, tmp_path: Path) -> None
     np.save(folder / "tets.npy", [[0, 1, 2, 3]])
     assert anastomesh.check(folder).report["verdict"] == "no_fault_found"
     np.save(folder / "tets.npy", [[0, 1, 2, 4]])
-    with pytest.raises(anastomesh.InputError, match="tets.npy: row 0 names 4, but points.npy has 4 rows"):
+    with pytest.raises(anastomesh.InputError, match="tets.npy: row 0 refers to 4, but points.npy has 4 rows"):
         anastomesh.check(folder)
 
 
