@@ -39,7 +39,7 @@ impl<'a> NetworkPicture<'a> {
     /// Of a network. What concerns meshes alone (patches, quality) is drawn plain, blocks as branches.
     ///
     /// # Errors
-    /// When its Strahler orders cannot be found.
+    /// Its Strahler orders cannot be found.
     pub fn new(network: &'a Skeleton, colour: Colour, roots: &[NodeId]) -> Result<Self, NotConverged> {
         let (legend, colours) = match colour {
             Colour::Radius => return Ok(Self::by_radius(network)),

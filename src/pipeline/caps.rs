@@ -75,7 +75,7 @@ impl Caps {
     /// Of the mesh of a network. Inlets and outlets are known by the names of their patches.
     ///
     /// # Errors
-    /// When the mesh cannot be read, or the pressures in the network cannot be found.
+    /// The mesh cannot be read, or the pressures in the network cannot be found.
     pub fn of(mesh: &dyn MeshSource, network: &Skeleton, fluid: Fluid) -> io::Result<Self> {
         let adjacency = network.adjacency();
         let terminals: BTreeMap<u32, NodeId> =

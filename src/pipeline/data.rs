@@ -81,7 +81,7 @@ impl VesselData {
     /// Of the network that was meshed. Inlets are known by the names of their patches.
     ///
     /// # Errors
-    /// When the pressures in the network cannot be found.
+    /// The pressures in the network cannot be found.
     pub fn new(data: Vec<Datum>, network: &Skeleton, mesh: &dyn MeshSource) -> Result<Self, NotConverged> {
         let columns = data.iter().map(|datum| datum.column()).collect();
         let edges = edges(network, &inlets(network, mesh))?;

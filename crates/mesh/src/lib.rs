@@ -153,17 +153,17 @@ pub struct Patch {
     pub id: i32,
     /// `wall`, `inlet`, `inlet_1`, …, `outlet_0`, `outlet_1`, …
     pub name: String,
-    /// What a cap closes; none for the wall.
+    /// Cap of the patch; `None` for the wall.
     pub cap: Option<Cap>,
 }
 
 impl Patch {
-    /// Whether it is called an inlet.
+    /// True if the name of the patch begins with `inlet`.
     pub fn is_inlet(&self) -> bool {
         self.id != WALL && self.name.starts_with("inlet")
     }
 
-    /// Whether it is called an outlet, or holds several.
+    /// True if the name of the patch begins with `outlet`.
     pub fn is_outlet(&self) -> bool {
         self.id != WALL && self.name.starts_with("outlet")
     }

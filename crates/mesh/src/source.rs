@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{Patch, VolumeMesh};
 use crate::geometry::Point3;
 
-/// How much a mesh holds.
+/// Counts of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SourceCounts {
     /// Points.
@@ -43,7 +43,7 @@ pub struct FacePiece<'a> {
 /// The blocks, or patches and blocks, of consecutive tetrahedra or boundary faces.
 #[derive(Clone, Debug, Default)]
 pub struct LabelPiece<'a> {
-    /// How many tetrahedra or faces.
+    /// Number of tetrahedra or faces.
     pub count: usize,
     /// As in [`FacePiece`]; empty for tetrahedra.
     pub patches: Cow<'a, [i32]>,
@@ -55,7 +55,7 @@ pub struct LabelPiece<'a> {
 /// and its boundary are numbered in this order. Parts may be read at the same time, and over and over again. A mesh that
 /// stands in memory is one part.
 pub trait MeshSource: Sync {
-    /// How much there is in all parts.
+    /// Counts over all parts.
     fn counts(&self) -> SourceCounts;
 
     /// The patches, in ascending order of their id.
@@ -82,7 +82,7 @@ pub trait MeshSource: Sync {
     /// What reading the mesh fails with.
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>>;
 
-    /// What [`tets`](Self::tets) says of blocks, without the tetrahedra.
+    /// Blocks of [`tets`](Self::tets), without the tetrahedra.
     ///
     /// # Errors
     /// What reading the mesh fails with.
@@ -91,7 +91,7 @@ pub trait MeshSource: Sync {
         Ok(LabelPiece { count: tets.len(), blocks, ..LabelPiece::default() })
     }
 
-    /// What [`boundary`](Self::boundary) says of patches and blocks, without the faces.
+    /// Patches and blocks of [`boundary`](Self::boundary), without the faces.
     ///
     /// # Errors
     /// What reading the mesh fails with.

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// When the stage began and ended, by the clock and in seconds of work.
+/// Start and end of the stage, as wall clock and CPU seconds.
 #[derive(Clone, Default)]
 struct Times(Arc<Mutex<Vec<Moment>>>);
 

@@ -64,19 +64,19 @@ pub struct Tetrahedralization {
     /// The triangle of the input that each of `faces` is, or is a piece of; empty when each is the one of the same
     /// number, as it is where none may be split and none is left out.
     pub origins: Vec<u32>,
-    /// What it took.
+    /// Summary of the run.
     pub summary: Summary,
 }
 
-/// What a mesh took.
+/// Summary of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Summary {
-    /// What recovery did.
+    /// Result of the recovery.
     pub recovery: RecoverySummary,
-    /// What improvement did, where it was asked for.
+    /// Result of the improvement, if requested.
     pub optimize: Option<OptimizeReport>,
-    /// What refinement did, where it was asked for.
+    /// Result of the refinement, if requested.
     pub refine: Option<RefineReport>,
     /// Number of regions.
     pub regions: usize,
@@ -87,7 +87,7 @@ pub struct Summary {
     /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
     /// them. There are none in a strict run.
     pub left_out: LeftOut,
-    /// What became of layers, where they were asked for.
+    /// Result of the layers, if requested.
     pub layers: Option<LayerSummary>,
 }
 
@@ -115,14 +115,14 @@ impl Tetrahedralizer {
         Self::default()
     }
 
-    /// What the input is.
+    /// Kind of the input.
     #[must_use]
     pub fn kind(mut self, kind: InputKind) -> Self {
         self.kind = kind;
         self
     }
 
-    /// Which points are put inside before anything else.
+    /// Interior points, inserted before recovery.
     #[must_use]
     pub fn interior(mut self, interior: Interior) -> Self {
         self.interior = interior;
@@ -136,14 +136,14 @@ impl Tetrahedralizer {
         self
     }
 
-    /// How long the edges of a refined mesh are to be.
+    /// Edge length of a refined mesh.
     #[must_use]
     pub fn sizing(mut self, sizing: Sizing) -> Self {
         self.sizing = sizing;
         self
     }
 
-    /// Whether the triangles of the input may be split.
+    /// Permission to split the triangles of the input.
     #[must_use]
     pub fn boundary(mut self, boundary: Boundary) -> Self {
         self.boundary = boundary;
@@ -158,21 +158,21 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Whether the mesh is improved, with its boundary as it is.
+    /// Turns the improvement on or off. It keeps the boundary.
     #[must_use]
     pub fn optimize(mut self, optimize: bool) -> Self {
         self.optimize = optimize;
         self
     }
 
-    /// How hard the improvement tries; all it can unless told otherwise.
+    /// Effort of the improvement; by default the largest.
     #[must_use]
     pub fn effort(mut self, effort: Effort) -> Self {
         self.effort = effort;
         self
     }
 
-    /// Whether triangles and segments with the outside, or holes, on all their sides are an error,
+    /// Makes triangles and segments with the outside, or holes, on all their sides an error,
     /// [`TetError::Outside`]. Otherwise they are left out, and the summary lists them; their points stay, unused.
     #[must_use]
     pub fn strict(mut self, strict: bool) -> Self {
@@ -180,7 +180,7 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Who is told about the progress, and asked whether to stop; a run then ends with [`TetError::Cancelled`].
+    /// Listener for progress and cancellation. A cancelled run ends with [`TetError::Cancelled`].
     #[must_use]
     pub fn progress(mut self, progress: impl Progress + Send + 'static) -> Self {
         self.progress = Some(Arc::new(progress));
@@ -265,7 +265,7 @@ impl Tetrahedralizer {
         })
     }
 
-    /// Whether the layers that are asked for make sense, and with what they are asked for.
+    /// Checks the requested layers, and their combination with other options.
     fn check_layers(&self, plc: PlcRef) -> Result<(), TetError> {
         let Some(layers) = &self.layers else { return Ok(()) };
         layers.check()?;

@@ -16,7 +16,7 @@ const VOLUME_TOLERANCE: f64 = 1e-10;
 /// And by this much of what three edges of each term span at most: rounding, where terms are those of flat corners.
 const TERM_ROUNDOFF: f64 = 16.0 * f64::EPSILON;
 
-/// What does not hold of a mesh that should fill a surface.
+/// Violated condition of a mesh that should fill a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyError {
@@ -64,7 +64,7 @@ pub enum CertifyError {
         /// The segment.
         segment: u32,
     },
-    /// What was left out of the mesh as lying outside is a face or an edge of it.
+    /// An item that was left out as lying outside is a face or an edge of the mesh.
     #[error("item {id} of the {part} of the input was left out, and the mesh has it")]
     NotOutside {
         /// Triangle or segment.
@@ -133,7 +133,7 @@ pub fn certify(mesh: &TetMesh, surface: &TriMesh) -> Result<(), CertifyError> {
     }
 }
 
-/// Where a triangle of the input lies in the mesh.
+/// Position of an input triangle in the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// It is a boundary face, oriented outwards.
@@ -233,7 +233,7 @@ fn opposed(mesh: &TetMesh, half: u32, mate: u32) -> Result<(), CertifyError> {
     }
 }
 
-/// The same face seen from the other side.
+/// Face with opposite orientation.
 fn swapped([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a, c, b]
 }

@@ -29,7 +29,7 @@ pub fn certify_hull(c: &Complex) -> Result<Vec<[u32; 3]>, CertifyError> {
 }
 
 /// Cells whose points and neighbours are fetched before the first of them is checked: the processor waits for many at once then.
-/// What is fetched stays in the first-level cache, 16 KiB.
+/// A block of 16 KiB stays in the first-level cache.
 const BLOCK: usize = 64;
 
 /// Checks tetrahedra, ghosts and their neighbours; returns the half-faces under the ghosts in ascending order.
@@ -188,7 +188,7 @@ fn shadow(p: &Point3) -> [f64; 2] {
     [p.x, p.y]
 }
 
-/// Whether a face, oriented outwards, is crossed by the ray in direction z from inside the tetrahedron with these corners. The
+/// True if a face, oriented outwards, is crossed by the ray in direction z from inside the tetrahedron with these corners. The
 /// ray begins at the first corner, moved by ε, ε² and ε³ of the way to each of the others: it misses all edges.
 fn is_above(corners: [[f64; 2]; 4], [p, q, r]: [[f64; 2]; 3]) -> bool {
     let left_of = |from, to| corners.iter().map(|&o| orient2d(from, to, o)).find(|&side| side != 0.0);

@@ -1,4 +1,4 @@
-//! What can go wrong in the tetrahedralizer.
+//! Errors of the tetrahedralizer.
 
 use super::complex::{ComplexError, face_key};
 use super::layer::LayersError;
@@ -20,7 +20,7 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// The same, a triangle as the input has it: a face of a complex may begin with another of its corners.
+    /// Replaces a triangle by its form in the input: a face of a complex may begin with another of its corners.
     pub(super) fn as_given(self, triangles: &[[u32; 3]]) -> Self {
         let Self::Triangle(face) = self else { return self };
         let key = face_key(face);
@@ -182,7 +182,7 @@ pub enum TetError {
         points: Vec<u32>,
         /// Number of points.
         count: usize,
-        /// Where the first is.
+        /// Position of the first.
         position: Point3,
     },
     /// Points at the same place.
@@ -318,7 +318,7 @@ pub enum TetError {
     BadInteriorPoint {
         /// Index among the interior points given.
         index: u32,
-        /// Where it is.
+        /// Its position.
         position: Point3,
     },
     /// The seed of a hole or region that lies in no such part of space.
@@ -328,7 +328,7 @@ pub enum TetError {
         seed: SeedKind,
         /// Index among them.
         index: u32,
-        /// Where it is.
+        /// Its position.
         position: Point3,
     },
     /// An edge length of [`Sizing`](crate::Sizing) that is not positive and finite.
@@ -369,7 +369,7 @@ pub enum TetError {
     EdgeMeets {
         /// Ends of the edge.
         edge: [u32; 2],
-        /// What it meets.
+        /// Obstacle that it intersects.
         obstacle: Obstacle,
     },
     /// Recovery ended before all of the surface was in the mesh, although the surface does not intersect itself.

@@ -1,4 +1,4 @@
-//! Which layers can be asked for along a wall.
+//! Options of layers along a wall.
 
 /// Options of layers of thin tetrahedra along a wall.
 ///
@@ -45,7 +45,7 @@ pub enum LayersError {
         Layers::THINNEST
     )]
     Thin {
-        /// How many layers.
+        /// Number of layers.
         count: u32,
         /// The thinnest, as a share of the radius.
         thinnest: f64,
@@ -69,7 +69,7 @@ impl Layers {
     /// The thinnest layer, as a share of the radius.
     pub const THINNEST: f64 = 1e-4;
 
-    /// How deep each layer reaches, from the wall on, as a share of the thickness of all.
+    /// Depth of each layer from the wall, as a share of the total thickness.
     pub fn depths(&self) -> Vec<f64> {
         let sizes = (0..self.count as i32).map(|i| self.growth.powi(i));
         let all: f64 = sizes.clone().sum();
@@ -84,7 +84,7 @@ impl Layers {
         depths
     }
 
-    /// Whether they can be.
+    /// Checks the ranges of the options.
     ///
     /// # Errors
     /// The first thing that is out of its limits, with these.

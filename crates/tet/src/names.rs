@@ -3,7 +3,7 @@
 use super::error::{Obstacle, TetError};
 use super::plc::InputPart;
 
-/// What the items of an input are called elsewhere.
+/// Names of the items of an input, for instance in its file.
 pub trait Names {
     /// The number of a point.
     fn point(&self, id: u32) -> u32;
@@ -18,7 +18,7 @@ pub trait Names {
 }
 
 impl TetError {
-    /// The same error, its points, triangles and seeds named as elsewhere; segments keep their ids.
+    /// Renames points, triangles and seeds of an error; segments keep their ids.
     #[must_use]
     pub fn renamed(mut self, names: &impl Names) -> Self {
         let points = |ids: &mut [u32]| ids.iter_mut().for_each(|id| *id = names.point(*id));

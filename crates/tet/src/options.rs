@@ -1,10 +1,10 @@
-//! What can be asked for.
+//! Options of the tetrahedralizer.
 
 use anastomesh_mesh::Bounds;
 use anastomesh_mesh::geometry::Point3;
 use std::sync::Arc;
 
-/// Which points are put inside the surface.
+/// Interior points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Interior {
     /// None but those that recovery needs.
@@ -34,7 +34,7 @@ pub enum Interior {
     Points(Vec<Point3>),
 }
 
-/// How long edges are to be, in the unit of the surface.
+/// Edge length, in the unit of the surface.
 ///
 /// ```
 /// use anastomesh_tet::Sizing;
@@ -48,7 +48,7 @@ pub enum Sizing {
     /// As the surface has them nearby.
     #[default]
     Surface,
-    /// The same everywhere.
+    /// Uniform length.
     Constant(f64),
     /// Given at each point of the input, interpolated between them.
     PerVertex(Vec<f64>),
@@ -67,7 +67,7 @@ impl std::fmt::Debug for Sizing {
     }
 }
 
-/// When a tetrahedron is split. Each bound that is set holds for all tetrahedra, as far as the boundary allows.
+/// Bounds of the refinement. Each bound holds for all tetrahedra, as far as the boundary allows.
 ///
 /// ```
 /// use anastomesh_tet::{Refinement, Tetrahedralizer};
@@ -124,7 +124,7 @@ impl Refinement {
     }
 }
 
-/// What may happen to the triangles of the input.
+/// Treatment of the input triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
     /// Nothing: each is a face of the mesh.

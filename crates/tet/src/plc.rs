@@ -1,4 +1,4 @@
-//! What is tetrahedralized: a piecewise linear complex of points, triangles and segments, and how it is read.
+//! Input of the tetrahedralizer: a piecewise linear complex of points, triangles and segments.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
@@ -115,7 +115,7 @@ impl From<TriMesh> for Plc {
     }
 }
 
-/// What a complex must be, and which part of space is filled.
+/// Kind of a complex, which determines the part of space that is filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InputKind {
     /// Surfaces that bound a volume: each edge has two triangles, which run through it in opposite directions. Space is
@@ -139,7 +139,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Whether the mesh has all of the input.
+    /// True if the mesh has all of the input.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.segments.is_empty()
     }

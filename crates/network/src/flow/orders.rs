@@ -22,7 +22,7 @@ impl Orders {
     /// Computes the orders of the vessels of a network with equal inflow at each inlet.
     ///
     /// # Errors
-    /// When the pressures cannot be found.
+    /// The pressures cannot be found.
     pub fn from_inlets(skeleton: &Skeleton, inlets: impl IntoIterator<Item = NodeId>) -> Result<Self, NotConverged> {
         let inflow = inlets.into_iter().map(|node| (node, 1.0)).collect();
         Ok(Self::of(skeleton, &solve(skeleton, &inflow, 1.0)?.pressure))
