@@ -28,10 +28,10 @@ pub struct FlowArgs {
     #[arg(long, value_name = "FLOW", value_parser = above_zero, allow_negative_numbers = true)]
     inflow: Option<f64>,
     /// Dynamic viscosity in units consistent with the mesh (default: blood, for a mesh in metres)
-    #[arg(long, value_name = "MU", default_value_t = anastomesh_io::volume::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", default_value_t = anastomesh_io::flow::BLOOD_VISCOSITY, value_parser = above_zero, allow_negative_numbers = true)]
     viscosity: f64,
     /// Density in units consistent with the mesh (default: blood, for a mesh in metres)
-    #[arg(long, value_name = "RHO", default_value_t = anastomesh_io::volume::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RHO", default_value_t = anastomesh_io::flow::BLOOD_DENSITY, value_parser = above_zero, allow_negative_numbers = true)]
     density: f64,
 }
 

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use anastomesh_io::volume::{CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
+use anastomesh_io::flow::{CapFlow, Flow, OutletModel, USUAL_REYNOLDS, flow_of_reynolds};
 use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::relabel::Relabelled;
 use anastomesh_mesh::source::MeshSource;
@@ -150,9 +150,14 @@ impl Caps {
     pub fn flow(&self) -> Flow {
         let mut caps: BTreeMap<i32, CapFlow> = BTreeMap::new();
         for row in &self.rows {
-            caps.entry(row.id).or_default().add_parallel(CapFlow { flow: row.flow, resistance: row.resistance });
+            let outlet = OutletModel::Resistance { resistance: row.resistance, distal_pressure: 0.0 };
+            let cap = caps.entry(row.id).or_insert_with(|| CapFlow::default().outlet(outlet));
+            if cap.flow != 0.0 {
+                cap.outlet = cap.outlet.parallel(&outlet).unwrap_or(outlet);
+            }
+            cap.flow += row.flow;
         }
-        Flow { density: self.fluid.density, viscosity: self.fluid.viscosity, caps }
+        Flow::new(self.fluid.density, self.fluid.viscosity).caps(caps)
     }
 }
 

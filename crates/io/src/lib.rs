@@ -16,6 +16,7 @@
 //! | [`network`] | skeletons of vascular networks |
 //! | [`surface`] | triangle surfaces, and boundaries of meshes |
 //! | [`volume`] | tetrahedral meshes with labelled boundaries, and cases for solvers |
+//! | [`flow`] | flow rates and outlet models of solver cases |
 //! | [`npy`] | arrays of `NumPy`, which all three families have |
 //! | [`faults`] | faults that formats share |
 //!
@@ -36,6 +37,7 @@
 #[cfg(test)]
 mod damage;
 mod file;
+pub mod flow;
 pub mod network;
 pub mod npy;
 mod patches;

@@ -1,6 +1,6 @@
 //! Contents of a mesh file besides the mesh.
 
-use super::conditions::Flow;
+use crate::flow::Flow;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::{Patch, VolumeMesh};
 use std::borrow::Cow;

@@ -2,7 +2,6 @@
 //!
 //! Each format has its errors in `error`, and `read` and `write` on bytes and streams, independent of other formats.
 
-mod conditions;
 mod content;
 mod error;
 #[doc(hidden)]
@@ -23,7 +22,6 @@ mod tests;
 mod vtu;
 mod write;
 
-pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub use content::{MeshFile, MeshNotes};
 pub use error::MeshFileError;
 

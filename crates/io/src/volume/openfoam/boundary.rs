@@ -1,7 +1,7 @@
 //! Patches of a case: names and face ranges.
 
+use crate::flow::{Role, plain};
 use crate::patches::usual_name;
-use crate::volume::conditions::{Role, plain};
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use std::collections::BTreeMap;

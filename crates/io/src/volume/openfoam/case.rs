@@ -2,7 +2,7 @@
 
 use super::boundary::{Boundary, FoamPatch};
 use super::head;
-use crate::volume::conditions::{Flow, Role};
+use crate::flow::{Flow, Role};
 use std::fmt::Write;
 
 /// Patch list. Inlets and outlets form groups, so that a case can address them together.

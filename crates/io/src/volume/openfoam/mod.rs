@@ -7,9 +7,9 @@ mod poly_mesh;
 #[cfg(test)]
 mod tests;
 
-use super::conditions::Flow;
 use super::content::MeshNotes;
 use crate::file::AtomicFolder;
+use crate::flow::Flow;
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::MeshSource;
 use boundary::Boundary;

@@ -8,11 +8,11 @@ mod spool;
 #[cfg(test)]
 mod tests;
 
-use super::conditions::plain;
 use super::content::MeshNotes;
 use super::vtu::arrays::{ArrayLocation, ArrayWriter, INT32, Width, cell_arrays, points_array};
 use super::vtu::{Recounted, file::File};
 use crate::file::{Asked, AtomicFile, AtomicFolder};
+use crate::flow::plain;
 use crate::patches::usual_name;
 use crate::vtk_xml::Blocks;
 use anastomesh_mesh::WALL;

@@ -1,7 +1,7 @@
 //! Input of `svMultiPhysics`: steady laminar flow with given inflow and a resistance at each outlet.
 
 use super::layout::{MESH, surface_path};
-use crate::volume::conditions::{Flow, Role, plain};
+use crate::flow::{Flow, Role, plain};
 use anastomesh_mesh::Patch;
 use std::fmt::Write;
 
@@ -50,7 +50,7 @@ fn condition(patch: &Patch, flow: &Flow) -> String {
         ),
         Role::Outlet => format!(
             "    <Type> Neu </Type>\n    <Time_dependence> Resistance </Time_dependence>\n    <Value> {:e} </Value>\n",
-            at.resistance
+            at.outlet.resistance()
         ),
         Role::Wall => {
             "    <Type> Dir </Type>\n    <Time_dependence> Steady </Time_dependence>\n    <Value> 0.0 </Value>\n".into()

@@ -1,11 +1,13 @@
 //! Flow conditions for formats that are complete solver cases.
 
+use super::{OutletModel, Profile, Transient, Waveform};
 use anastomesh_mesh::{Cap, Patch};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Flow data of a solver, in units consistent with the mesh: SI for a mesh in metres.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Flow {
     /// Mass per volume.
     pub density: f64,
@@ -13,26 +15,22 @@ pub struct Flow {
     pub viscosity: f64,
     /// Conditions by patch.
     pub caps: BTreeMap<i32, CapFlow>,
+    /// Velocity profile on inlets.
+    pub profile: Profile,
+    /// Simulated time; `None` for steady flow.
+    pub transient: Option<Transient>,
 }
 
 /// Conditions at a cap.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CapFlow {
-    /// Volume flow rate into the mesh at an inlet, out of it at an outlet.
+    /// Mean volume flow rate into the mesh at an inlet, out of it at an outlet.
     pub flow: f64,
-    /// Pressure per flow rate beyond an outlet.
-    pub resistance: f64,
-}
-
-impl CapFlow {
-    /// Adds a cap of the same patch: flows add, and so do conductances in parallel.
-    pub fn add_parallel(&mut self, other: Self) {
-        self.flow += other.flow;
-        self.resistance = match (self.resistance > 0.0, other.resistance > 0.0) {
-            (true, true) => 1.0 / (1.0 / self.resistance + 1.0 / other.resistance),
-            _ => self.resistance.max(other.resistance),
-        };
-    }
+    /// Pulsatile flow rate into an inlet; `None` if it is steady.
+    pub waveform: Option<Waveform>,
+    /// Model beyond an outlet.
+    pub outlet: OutletModel,
 }
 
 /// Density of blood, in kg/m³.
@@ -51,14 +49,14 @@ pub fn flow_of_reynolds(reynolds: f64, radius: f64, density: f64, viscosity: f64
 
 /// Role of a patch, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     Wall,
     Inlet,
     Outlet,
 }
 
 impl Role {
-    pub(super) fn of(patch: &Patch) -> Self {
+    pub(crate) fn of(patch: &Patch) -> Self {
         match (patch.is_inlet(), patch.is_outlet()) {
             (true, _) => Self::Inlet,
             (_, true) => Self::Outlet,
@@ -68,23 +66,31 @@ impl Role {
 }
 
 /// Sanitizes a name for use as a dictionary word and file name.
-pub(super) fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     let breaks = |c: char| c.is_whitespace() || c.is_control() || "\"'/\\;:{}()[]<>&|*?$#".contains(c);
     name.chars().map(|c| if breaks(c) { '_' } else { c }).collect()
 }
 
 impl Flow {
+    /// Steady flow of a fluid, without conditions.
+    #[must_use]
+    pub fn new(density: f64, viscosity: f64) -> Self {
+        Self { density, viscosity, caps: BTreeMap::new(), profile: Profile::default(), transient: None }
+    }
+
     /// Default creeping blood flow, for a mesh without a network. Inlets of unknown radius have no flow.
-    pub(super) fn usual(patches: &[Patch]) -> Self {
+    pub(crate) fn usual(patches: &[Patch]) -> Self {
         let inlets = patches.iter().filter(|patch| patch.is_inlet());
         let flow = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, BLOOD_DENSITY, BLOOD_VISCOSITY);
-        let cap = |patch: &Patch| CapFlow { flow: patch.cap.as_ref().map_or(0.0, flow), resistance: 0.0 };
-        let caps = inlets.map(|patch| (patch.id, cap(patch))).collect();
-        Self { density: BLOOD_DENSITY, viscosity: BLOOD_VISCOSITY, caps }
+        let cap = |patch: &Patch| CapFlow::default().flow(patch.cap.as_ref().map_or(0.0, flow));
+        Self::new(BLOOD_DENSITY, BLOOD_VISCOSITY).caps(inlets.map(|patch| (patch.id, cap(patch))).collect())
     }
 
     /// Conditions at a patch; no flow if unknown.
-    pub(super) fn at(&self, patch: &Patch) -> CapFlow {
-        self.caps.get(&patch.id).copied().unwrap_or_default()
+    pub(crate) fn at(&self, patch: &Patch) -> CapFlow {
+        self.caps.get(&patch.id).cloned().unwrap_or_default()
     }
 }
+
+anastomesh_mesh::setters!(Flow { caps: BTreeMap<i32, CapFlow>, profile: Profile, transient: Option<Transient> });
+anastomesh_mesh::setters!(CapFlow { flow: f64, waveform: Option<Waveform>, outlet: OutletModel });
