@@ -81,8 +81,8 @@ mod tests {
         assert_eq!(wrapped(row, 200), row);
         let note = "  edges 1-2 and 3-4: distance 0.25, sum of radii 2.0";
         assert_eq!(wrapped(note, 36), "  edges 1-2 and 3-4: distance 0.25,\n    sum of radii 2.0");
-        let path = "file     a/very/long/path/that/has/no/blanks/and/stays/whole.vtu (1 kB)";
-        assert!(wrapped(path, 40).contains("a/very/long/path/that/has/no/blanks/and/stays/whole.vtu"));
+        let path = "file     a/rather/long/path/that/has/no/blanks/and/stays/whole.vtu (1 kB)";
+        assert!(wrapped(path, 40).contains("a/rather/long/path/that/has/no/blanks/and/stays/whole.vtu"));
         assert!(wrapped(path, 40).lines().skip(1).all(|line| line.starts_with("         ")));
         assert_eq!(wrapped("too narrow for words", 8), "too narrow for words");
     }
