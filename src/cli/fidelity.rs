@@ -37,9 +37,11 @@ impl FidelityArgs {
     /// # Errors
     /// A limit is negative or NaN.
     pub fn limits(&self) -> Result<Limits, Failure> {
-        let check = |option: &str, value: f64, unit: &dyn Display| match value >= 0.0 {
-            true => Ok(()),
-            false => Err(Failure::usage(format!("{option} {value}: give a number {unit} of at least 0"))),
+        let check = |option: &str, value: f64, unit: &dyn Display| {
+            if value >= 0.0 {
+                return Ok(());
+            }
+            Err(Failure::usage(format!("{option} {value}: give a number {unit} of at least 0")))
         };
         check("--max-displacement", self.max_displacement.unwrap_or(0.0), &"of radii")?;
         check("--max-lumen-error", self.max_lumen_error, &"(0.1 is 10 %)")?;
@@ -69,7 +71,7 @@ impl FidelityArgs {
             let is_accepted = self.accepts(defect);
             match defect {
                 Defect::Displaced { bound, places, .. } if is_accepted => {
-                    log::warning(&displaced(places, *bound, name))
+                    log::warning(&displaced(places, *bound, name));
                 }
                 Defect::Displaced { bound, places, .. } => log::note(&displaced(places, *bound, name)),
                 Defect::Dropped { .. } | Defect::Extended { .. } if is_accepted => {

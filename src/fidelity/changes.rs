@@ -102,9 +102,7 @@ impl Changes {
         for tip in prepare.short_tips.iter().filter(|t| t.put_out) {
             Change::add(&mut changes.extended, tip.needed / tip.length.max(f64::MIN_POSITIVE) - 1.0, tip.tip);
         }
-        // Crowded terminals were moved sideways, which counts as moved.
-        let crowded = refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
-        let known: FxHashSet<u32> = prepare.short_tips.iter().map(|t| t.tip).chain(crowded).collect();
+        let known: FxHashSet<u32> = prepare.short_tips.iter().map(|t| t.tip).collect();
         for cap in caps.iter().filter(|cap| !known.contains(&cap.node)) {
             if let Some(share) = vessels.extension(cap) {
                 Change::add(&mut changes.extended, share, cap.node);
