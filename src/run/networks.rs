@@ -3,9 +3,10 @@
 use crate::fidelity::Compared;
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_network::{PrepareReport, TouchedBy, TouchingTip, take_back};
+use anastomesh_network::{Island, PrepareReport, TouchedBy, TouchingTip, take_back};
 use anastomesh_network::{RefineReport, Refined};
-use anastomesh_skeleton::{EdgeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Skeleton, clean};
+use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
 /// Networks of a run, and what was done to get from one to the next. Those that do not differ are shared.
@@ -90,6 +91,21 @@ impl Networks {
         let meet_at_fork = |edges: [EdgeId; 2]| ends(edges[0]).iter().any(|end| ends(edges[1]).contains(end));
         network.overlaps(&adjacency).pairs.iter().all(|overlap| meet_at_fork(overlap.edges))
     }
+}
+
+/// Network without the components that contain the nodes of removed islands.
+pub(crate) fn without_islands(network: Skeleton, islands: &[Island]) -> Skeleton {
+    if islands.is_empty() {
+        return network;
+    }
+    let removed: FxHashSet<u32> = islands.iter().map(|island| island.node).collect();
+    let of_node = network.components(&network.adjacency()).of_node;
+    let is_removed = |n: NodeId| removed.contains(&network.node(n).original);
+    let gone: FxHashSet<u32> = network.node_ids().filter(|&n| is_removed(n)).map(|n| of_node[n.index()]).collect();
+    let mut rest = network.clone();
+    rest.edges.retain(|edge| !gone.contains(&of_node[edge.nodes[0].index()]));
+    // Without an edge left, nothing was removed.
+    clean(&rest).map_or(network, |(rest, _)| rest)
 }
 
 /// Shares `other` if the network is equal to it: networks have millions of vessels.

@@ -1,9 +1,11 @@
 //! A network ready to be meshed.
 
 use super::error::MeshingError;
+use super::limits::Limits;
 use super::networks::Networks;
 use super::result::NetworkMesh;
 use super::strategy::{self, Attempt, Candidate, Meshing, Strategy};
+use crate::fidelity::Changes;
 use crate::pipeline::{
     Clock, Estimate, Fluid, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
     Store, Stored, TooLarge, Whole, fingerprint, make_share, mesh_in_memory,
@@ -25,7 +27,7 @@ pub(super) struct Settings {
     /// True if terminals that could not be capped are retracted.
     pub retracts: bool,
     pub fluid: Fluid,
-    pub max_displacement: Option<f64>,
+    pub limits: Limits,
 }
 
 /// Network with its cures applied and its inlets chosen, and the plan to mesh it by.
@@ -144,10 +146,11 @@ impl PreparedRun {
             attempts,
             kept: attempt,
             fidelity: None,
+            changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.fluid, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.fluid, settings.limits, progress)
     }
 
     /// Meshes in memory. Woven joints are smoothed, if the plan asks for it; that is one attempt, without fallbacks.
@@ -187,9 +190,10 @@ impl PreparedRun {
             attempts: vec![Attempt { strategy: Strategy::Planned, fault }],
             kept: 0,
             fidelity: None,
+            changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.fluid, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.fluid, settings.limits, progress)
     }
 }

@@ -8,6 +8,7 @@ use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::touching_text;
 use anastomesh_network::{RefineParams, refine};
+use anastomesh_skeleton::NodeId;
 use serde::Serialize;
 
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
@@ -195,7 +196,8 @@ impl<'a> Meshing<'a, '_> {
                 return self.ended(strategy, made, fault, networks);
             }
             self.attempts.push(Attempt { strategy, fault });
-            touching_text(&told).lines().for_each(|line| self.progress.note(line));
+            let name = |node| networks.names.of(NodeId(node));
+            touching_text(&told, &name).lines().for_each(|line| self.progress.note(line));
             strategy = Strategy::RetractedTips;
             retractions += 1;
         }
