@@ -131,7 +131,7 @@ impl Run {
         let networks = Networks::new(given, outline, skeleton, names, report);
         let retracts = params.touching != Touching::Keep;
         let settings = Settings { refine, retracts, fluid, limits };
-        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, origin: Vec::new(), settings })
+        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, settings })
     }
 
     /// Meshes into a store; the mesh is never in memory as a whole. `fits` hears what the run will take before anything is
