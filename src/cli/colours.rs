@@ -23,7 +23,6 @@ pub fn painted(level: &str, before: &str, message: &str) -> String {
     let mut out = match level {
         "error" => wrapped(BAD, before),
         "warning" => wrapped(ODD, before),
-        "failure" => wrapped(BAD, before),
         _ => before.to_owned(),
     };
     if level == "failure" {

@@ -16,8 +16,8 @@ use anastomesh_network::NameOf;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Fidelity")]
 pub struct FidelityArgs {
-    /// Maximum distance of the axis from the input, in radii; exit code 1 if exceeded (default: 1 for measured networks, at
-    /// 99 % of the axis and wherever no repair or overlap requires more; no limit for others)
+    /// Maximum distance of the axis from the input, in radii; exit code 1 if exceeded. Default: 1 for measured networks, at
+    /// 99 % of the axis and where no repair or overlap requires more; no limit for others
     #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = number)]
     max_displacement: Option<f64>,
     /// Warn instead of failing when the axis exceeds the limit
@@ -26,8 +26,7 @@ pub struct FidelityArgs {
     /// Maximum relative difference between the volume and that of the given lumen; exit code 1 if exceeded
     #[arg(long, value_name = "SHARE", default_value_t = 0.1, allow_negative_numbers = true, value_parser = number)]
     max_lumen_error: f64,
-    /// Warn instead of failing when repairs drop more than 2 radii of a vessel, or extend a tip by more than the length of
-    /// its vessel
+    /// Warn instead of failing when repairs drop more than 2 radii of a vessel, or more than double the length of one
     #[arg(long)]
     allow_dropped: bool,
 }
@@ -38,9 +37,11 @@ impl FidelityArgs {
     /// # Errors
     /// A limit is negative or NaN.
     pub fn limits(&self) -> Result<Limits, Failure> {
-        let check = |option: &str, value: f64, unit: &dyn Display| match value >= 0.0 {
-            true => Ok(()),
-            false => Err(Failure::usage(format!("{option} {value}: give a number {unit} of at least 0"))),
+        let check = |option: &str, value: f64, unit: &dyn Display| {
+            if value >= 0.0 {
+                return Ok(());
+            }
+            Err(Failure::usage(format!("{option} {value}: give a number {unit} of at least 0")))
         };
         check("--max-displacement", self.max_displacement.unwrap_or(0.0), &"of radii")?;
         check("--max-lumen-error", self.max_lumen_error, &"(0.1 is 10 %)")?;
@@ -70,7 +71,7 @@ impl FidelityArgs {
             let is_accepted = self.accepts(defect);
             match defect {
                 Defect::Displaced { bound, places, .. } if is_accepted => {
-                    log::warning(&displaced(places, *bound, name))
+                    log::warning(&displaced(places, *bound, name));
                 }
                 Defect::Displaced { bound, places, .. } => log::note(&displaced(places, *bound, name)),
                 Defect::Dropped { .. } | Defect::Extended { .. } if is_accepted => {

@@ -28,7 +28,7 @@ use crate::pipeline::{Caps, Datum, Estimate, JointStyle, MeshPlan, RunReport, Sh
 use crate::report::caps;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
-use crate::report::verdict::Verdict;
+use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with};
@@ -40,7 +40,6 @@ use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{NodeId, Skeleton};
@@ -339,10 +338,8 @@ impl Args {
         if !self.common.quiet {
             self.blocks.advise(&report, true);
         }
-        Failure::stage(format!(
-            "{} could not be meshed (listed above); --keep-going meshes the rest",
-            counted(report.failed.len(), "block")
-        ))
+        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
+        Failure::stage(format!("{missing}; --keep-going meshes the rest"))
     }
 
     /// Failure of a run before its blocks.
@@ -372,9 +369,9 @@ impl Args {
         run: &RunReport,
         found: Option<&Found>,
     ) -> Result<(), Failure> {
-        let failed = || (Mark::Bad, format!("{} could not be meshed", counted(run.failed.len(), "block")));
-        let verdict = found.map_or_else(failed, |found| page::headline(found.check, found.verdict));
         let name = |node| networks.names.of(NodeId(node));
+        let failed = || (Mark::Bad, missing(run, &name));
+        let verdict = found.map_or_else(failed, |found| page::headline(found.check, found.verdict));
         let unit = page::LengthUnit(self.network.units.map(|units| units.names()[1]));
         let invalid = found.is_none_or(|found| !found.check.is_valid());
         self.report.write(&self.output, Some(verdict), plan, |page| {
@@ -479,7 +476,7 @@ impl Args {
         }
         let name = |node| names.of(NodeId(node));
         if self.common.verbose {
-            let all = [Some(run.text(&name)), check.map(conditions), fidelity.map(ToString::to_string)];
+            let all = [Some(run.text(&name)), check.map(conditions), fidelity.map(Fidelity::lengths)];
             log::result(&all.into_iter().flatten().collect::<String>());
         }
         let table = self.table();

@@ -18,7 +18,7 @@ use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::pipeline::{Estimate, MeshPlan, RunReport};
 use crate::report::summary::Summary;
-use crate::report::verdict::Verdict;
+use crate::report::verdict::{Verdict, missing};
 use crate::run::{Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
 use anastomesh_io::volume::MeshNotes;
@@ -26,7 +26,6 @@ use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
-use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::NodeId;
@@ -135,10 +134,8 @@ impl Args {
         if !self.common.quiet {
             self.blocks.advise(&report, true);
         }
-        Failure::stage(format!(
-            "{} without a valid surface (listed above); --keep-going writes the rest",
-            counted(report.failed.len(), "block")
-        ))
+        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
+        Failure::stage(format!("{missing}; --keep-going writes the rest"))
     }
 
     /// Failure of a run before its blocks.

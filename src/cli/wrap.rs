@@ -57,12 +57,15 @@ fn indent(line: &str) -> usize {
     if is_row { LABEL + 1 } else { blanks + 2 }
 }
 
-/// Words with the blanks before them.
+/// Words with the blanks before them. A percent sign belongs to its number.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     let mut rest = line;
     std::iter::from_fn(move || {
         let start = rest.len() - rest.trim_start().len();
-        let end = rest[start..].find(' ').map_or(rest.len(), |at| start + at);
+        let mut end = rest[start..].find(' ').map_or(rest.len(), |at| start + at);
+        if rest[end..].starts_with(" %") {
+            end += 2;
+        }
         let (word, left) = rest.split_at(end);
         rest = left;
         (!word.is_empty()).then_some(word)
@@ -77,12 +80,12 @@ mod tests {
     fn rows_and_notes_continue_below_their_text() {
         let row = "axis     displaced by median 0.1 radii, 99 % 0.2, max 0.3 at node 7";
         let expected = "axis     displaced by median 0.1 radii,\n         99 % 0.2, max 0.3 at node 7";
-        assert_eq!(wrapped(row, 44), expected);
+        assert_eq!(wrapped(row, 43), expected);
         assert_eq!(wrapped(row, 200), row);
         let note = "  edges 1-2 and 3-4: distance 0.25, sum of radii 2.0";
         assert_eq!(wrapped(note, 36), "  edges 1-2 and 3-4: distance 0.25,\n    sum of radii 2.0");
-        let path = "file     a/very/long/path/that/has/no/blanks/and/stays/whole.vtu (1 kB)";
-        assert!(wrapped(path, 40).contains("a/very/long/path/that/has/no/blanks/and/stays/whole.vtu"));
+        let path = "file     a/rather/long/path/that/has/no/blanks/and/stays/whole.vtu (1 kB)";
+        assert!(wrapped(path, 40).contains("a/rather/long/path/that/has/no/blanks/and/stays/whole.vtu"));
         assert!(wrapped(path, 40).lines().skip(1).all(|line| line.starts_with("         ")));
         assert_eq!(wrapped("too narrow for words", 8), "too narrow for words");
     }

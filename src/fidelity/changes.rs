@@ -1,7 +1,7 @@
 //! Changes of the network between its file and its mesh: what was moved, shrunk, extended, fused or dropped.
 //!
-//! The repairs report what they do in lengths. For a user it counts how much of a vessel is missing from the lumen, in
-//! radii of that vessel: a spur within a thick vessel is no loss, and a thin branch of the same length is one.
+//! The repairs report what they do in lengths. Here a dropped vessel counts by its length outside the lumen, in its radii.
+//! A spur within a thick vessel is no loss, and a thin branch of the same length is one.
 
 use super::tubes::Tubes;
 use anastomesh_mesh::Cap;
@@ -46,7 +46,7 @@ impl Change {
     }
 }
 
-/// Changes between the given network and the meshed one, by kind; `None` if there are none.
+/// Changes between the given network and the meshed one, by kind; `None` without a change.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Changes {
@@ -112,13 +112,22 @@ impl Changes {
         changes
     }
 
-    /// Nodes that moved: the first node of each name, as the others are parts of split nodes or points of bends.
+    /// Nodes that moved. Only the first node of each name was in the file. Further ones are points of bends and parts of
+    /// split nodes, which count by their distance from the axis.
     fn move_nodes(&mut self, prepared: &Skeleton, made: &Skeleton, tips: &FxHashSet<u32>) {
         let was: FxHashMap<u32, _> = prepared.nodes.iter().rev().map(|n| (n.original, n)).collect();
         let mut seen = FxHashSet::default();
+        let tubes = (made.nodes.len() > prepared.nodes.len()).then(|| Tubes::of(prepared));
         for node in made.nodes.iter().filter(|n| !tips.contains(&n.original)) {
-            let Some(before) = was.get(&node.original).filter(|_| seen.insert(node.original)) else { continue };
-            let radii = (node.position - before.position).norm() / before.radius;
+            let before = was.get(&node.original).filter(|_| seen.insert(node.original));
+            let off_axis = || {
+                let near = tubes.as_ref()?.nearest(&node.position, node.radius, |distance, _| distance)?;
+                Some(near.distance / near.radius)
+            };
+            let radii = match before {
+                Some(before) => (node.position - before.position).norm() / before.radius,
+                None => off_axis().unwrap_or(0.0),
+            };
             if radii > MOVED {
                 Change::add(&mut self.moved, radii, node.original);
             }

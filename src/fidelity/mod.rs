@@ -79,9 +79,10 @@ impl Fidelity {
         };
         let axis = Displacements::of(given, meshed, &tubes);
         let mut found = Self { axis, wall, lumen, volume, ..Self::default() };
-        found.radius = match found.axis.spread.p99 > MOVED {
-            true => SectionErrors { spread: wall::spread(&tubes, mesh)?, of: Reference::Moved },
-            false => SectionErrors { spread: found.wall, of: Reference::Given },
+        found.radius = if found.axis.spread.p99 > MOVED {
+            SectionErrors { spread: wall::spread(&tubes, mesh)?, of: Reference::Moved }
+        } else {
+            SectionErrors { spread: found.wall, of: Reference::Given }
         };
         Ok(found)
     }

@@ -68,14 +68,21 @@ impl Fidelity {
     }
 }
 
-/// Rows in which nodes are named by their index in the file, with the lengths of both axes.
+/// Rows in which nodes are named by their index in the file, and the lengths of both axes.
 impl fmt::Display for Fidelity {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         for (label, text) in self.rows(&|node| node.to_string()) {
             writeln!(out, "{label}: {text}")?;
         }
+        out.write_str(&self.lengths())
+    }
+}
+
+impl Fidelity {
+    /// Line with the lengths of both axes.
+    pub fn lengths(&self) -> String {
         let [meshed, given] = [self.axis.meshed_length, self.axis.given_length].map(number);
-        writeln!(out, "length: {meshed}, given network {given}")
+        format!("length of the axis {meshed}, given network {given}\n")
     }
 }
 

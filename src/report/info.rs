@@ -336,7 +336,8 @@ impl NetworkInfo {
         }
         self.write_cleaning(f)?;
         writeln!(f, "nodes: {} ({})", grouped(self.nodes), counted(self.terminals, "terminal"))?;
-        writeln!(f, "edges: {} in {} branches", grouped(self.edges), grouped(self.branches))?;
+        let noun = if self.branches == 1 { "branch" } else { "branches" };
+        writeln!(f, "edges: {} in {} {noun}", grouped(self.edges), grouped(self.branches))?;
         let [components, largest] = [self.components, self.largest_component].map(grouped);
         writeln!(f, "components: {components} (the largest has {largest} nodes)")?;
         writeln!(f, "loops: {}", grouped(self.loops))?;

@@ -1,7 +1,7 @@
 //! Verdict of a run: its last line.
 
 use crate::fidelity::share;
-use crate::pipeline::RunReport;
+use crate::pipeline::{RunReport, named};
 use crate::run::Defect;
 use anastomesh_mesh::check::text::{verdict, violation};
 use anastomesh_mesh::check::{CheckReport, Verdict as Validity};
@@ -46,12 +46,8 @@ impl Verdict {
     /// Verdict of a run that made a mesh or a surface, with the defects that are not accepted.
     pub fn of_mesh(check: &CheckReport, run: &RunReport, defects: &[&Defect], name: NameOf) -> Self {
         let validity = Self::of_check(check);
-        let missing = run.failed.len();
-        if missing > 0 {
-            return Self::bad(format!(
-                "NOT complete: {} could not be meshed (listed above)",
-                counted(missing, "block")
-            ));
+        if !run.failed.is_empty() {
+            return Self::bad(format!("NOT complete: {}", missing(run, name)));
         }
         match (validity.is_good, unfaithful(defects, run, name)) {
             (_, None) => validity,
@@ -74,6 +70,16 @@ impl Verdict {
             (true, Some(reasons)) => Self::bad(format!("NOT refined: {overlaps}; not faithful: {reasons}")),
         }
     }
+}
+
+/// Number of failed blocks, with the reason of the first.
+pub fn missing(run: &RunReport, name: NameOf) -> String {
+    let blocks = counted(run.failed.len(), "block");
+    let first = run.failed.first().map_or_else(String::new, |failed| {
+        let first = if run.failed.len() > 1 { "first " } else { "" };
+        format!(": {first}{} (nodes {})", failed.reason, named(&failed.nodes, name))
+    });
+    format!("{blocks} could not be meshed{first}")
 }
 
 /// Reasons why a result does not represent its network; `None` if it does.

@@ -73,8 +73,8 @@ impl Limits {
     }
 }
 
-/// Nodes that may be far from where they were: an overlap demanded it, a node of many vessels was split within its ball, or
-/// a cure in the report took their vessel off or moved its end.
+/// Nodes that a listed change may move far: overlaps that required it, nodes of many vessels, which are split, and vessels
+/// that a repair removed or whose end it moved.
 fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));

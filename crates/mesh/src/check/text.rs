@@ -120,8 +120,8 @@ pub fn violation(result: &LineResult) -> String {
     match (&result.expected, &result.found) {
         (Some(expected), Some(found)) if expected.len() + found.len() > 2 => {
             let (only_expected, only_found) = (without(expected, found), without(found, expected));
-            let components = found.len();
-            let differ = only_found.len();
+            let components = found.len().max(expected.len());
+            let differ = only_found.len().max(only_expected.len());
             let [expected, found] = [only_expected, only_found].map(|left| list(&left));
             format!(
                 "{many} differs in {differ} of {}: expected {expected}, found {found}",
