@@ -291,7 +291,10 @@ impl Args {
             Some(grouped) => grouped,
             None => &made.mesh,
         };
-        let notes = made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), self.typed());
+        let notes = made.notes(
+            concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
+            self.typed(made.networks.refine.is_some()),
+        );
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         if let Some(caps) = &made.caps {
@@ -424,9 +427,9 @@ impl Args {
     }
 
     /// Options that the mesh depends on, as command-line text.
-    fn typed(&self) -> String {
+    fn typed(&self, is_refined: bool) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
-        format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed())
+        format!("mesh {}{core}{}", self.blocks.typed(is_refined), self.layers.typed())
     }
 
     /// Writes the refined network, if requested: the network as given if that is meshed.
