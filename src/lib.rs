@@ -70,7 +70,7 @@ pub mod meshing {
         Along, Bin, Change, Changes, Displaced, Displacements, Fidelity, RadiusReference, SectionErrors, Spread,
     };
     pub use crate::run::{
-        Attempt, Defect, Fault, Limits, MeshingError, NetworkMesh, Networks, PreparedRun, Run, Strategy,
+        Attempt, Defect, Fault, Limits, MeshingError, NetworkMesh, Networks, PreparedRun, RefinedAxis, Run, Strategy,
     };
     // Its steps and reports.
     pub use crate::block::ThinLayers;

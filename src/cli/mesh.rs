@@ -37,6 +37,7 @@ use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::PrepareReport;
@@ -187,8 +188,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let work = if args.dry_run { None } else { args.work.open(shard, || prepared.manifest())? };
     let refined = || prepared.refined(work.as_ref().map(|work| &work.store), &bars);
     let prepared = pool.install(refined).map_err(|e| args.explain_alone(e))?;
-    if shard.is_none() {
-        args.tell_refined(&prepared, &stop)?;
+    // Shards do not write shared files.
+    if shard.is_none() && !args.dry_run && prepared.networks.refine.is_some() {
+        stop.keep();
+        args.write_refined(&prepared.networks)?;
     }
     if args.dry_run {
         let found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
@@ -271,6 +274,7 @@ impl Args {
 
     /// Writes the mesh and the reports.
     fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+        self.tell_refined(&made.networks)?;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
         let options = WriteOptions::default()
@@ -288,7 +292,10 @@ impl Args {
             Some(grouped) => grouped,
             None => &made.mesh,
         };
-        let notes = made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), self.typed());
+        let notes = made.notes(
+            concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
+            self.typed(made.networks.refine.is_some()),
+        );
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         if let Some(caps) = &made.caps {
@@ -325,6 +332,9 @@ impl Args {
     /// Failure of a run, after its reports.
     fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        if let Err(failure) = self.tell_refined(&networks) {
+            return failure;
+        }
         let paged = self.write_page(plan, &networks, &report, None);
         if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
             return failure;
@@ -418,20 +428,28 @@ impl Args {
     }
 
     /// Options that the mesh depends on, as command-line text.
-    fn typed(&self) -> String {
+    fn typed(&self, is_refined: bool) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
-        format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed())
+        format!("mesh {}{core}{}", self.blocks.typed(is_refined), self.layers.typed())
     }
 
-    /// Writes the refined network and its report, if requested. Shards do not write shared files.
-    fn tell_refined(&self, run: &PreparedRun, stop: &Stop) -> Result<(), Failure> {
-        let Some(report) = &run.networks.refine else { return Ok(()) };
-        if let Some(path) = &self.refined {
-            stop.keep();
-            super::refine::write(path, &run.networks.network, &run.origin)?;
+    /// Writes the refined network, if requested: the network as given if that is meshed.
+    fn write_refined(&self, networks: &Networks) -> Result<(), Failure> {
+        let Some(path) = &self.refined else { return Ok(()) };
+        match &networks.refined {
+            Some(refined) => super::refine::write(path, &refined.skeleton, &refined.origin),
+            None => {
+                let at: Vec<Point3> = networks.prepared.nodes.iter().map(|node| node.position).collect();
+                super::refine::write(path, &networks.prepared, &at)
+            }
         }
-        if self.common.verbose && !self.common.json {
-            log::note(&report.text(&|node| run.networks.names.of(NodeId(node))));
+    }
+
+    /// Writes the refined network that was meshed, and its report.
+    fn tell_refined(&self, networks: &Networks) -> Result<(), Failure> {
+        self.write_refined(networks)?;
+        if let Some(report) = networks.refine.as_ref().filter(|_| self.common.verbose && !self.common.json) {
+            log::note(&report.text(&|node| networks.names.of(NodeId(node))));
         }
         Ok(())
     }

@@ -102,7 +102,7 @@ impl Args {
         let mut made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, plan))?;
         let notes = MeshNotes {
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("surface {}", self.blocks.typed()),
+            options: format!("surface {}", self.blocks.typed(true)),
             ..MeshNotes::default()
         };
         let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };

@@ -51,7 +51,7 @@ const AT_A_TIME: usize = 1 << 14;
 
 impl Displacements {
     /// Measures the displacements; `tubes` are those of the meshed network.
-    pub(super) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
+    pub(crate) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
         let edges: Vec<EdgeId> = given.edge_ids().collect();
         let (mut all, mut furthest) = (Vec::new(), Vec::new());
         let mut place: Option<Displaced> = None;

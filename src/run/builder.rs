@@ -132,7 +132,7 @@ impl Run {
         let retracts = params.touching != Touching::Keep;
         flow.check_with(&networks.prepared, &inlets.sites(&networks.prepared), &networks.names)?;
         let settings = Settings { refine, retracts, flow, limits };
-        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, origin: Vec::new(), settings })
+        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, settings })
     }
 
     /// Meshes into a store; the mesh is never in memory as a whole. `fits` hears what the run will take before anything is

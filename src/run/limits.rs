@@ -6,9 +6,9 @@ use anastomesh_skeleton::{Branch, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
 /// Default limit of the displacement of a measured axis, in radii.
-const MEASURED: f64 = 1.0;
+pub(super) const MEASURED: f64 = 1.0;
 /// Default limit of the relative difference between the volume of a mesh and of the given lumen.
-const LUMEN: f64 = 0.1;
+pub(super) const LUMEN: f64 = 0.1;
 /// Maximum length of a vessel that a repair may drop, in its radii.
 const DROPPED: f64 = 2.0;
 /// Maximum distance of a cap beyond the given end of its vessel, in lengths of the vessel.

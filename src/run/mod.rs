@@ -16,9 +16,9 @@ pub use builder::Run;
 pub use defect::Defect;
 pub use error::MeshingError;
 pub use limits::Limits;
-pub use networks::Networks;
 #[cfg(feature = "cli")]
 pub(crate) use networks::without_islands;
+pub use networks::{Networks, RefinedAxis};
 pub use prepared::PreparedRun;
 pub use result::NetworkMesh;
 pub use strategy::{Attempt, Fault, Strategy};

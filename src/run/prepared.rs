@@ -12,7 +12,6 @@ use crate::pipeline::{
 };
 use anastomesh_io::network::NetworkNote;
 use anastomesh_mesh::VolumeMesh;
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::gather;
 use anastomesh_network::{RefineParams, Refined, refine};
@@ -45,31 +44,20 @@ pub struct PreparedRun {
     pub cut_short: Vec<(u32, f64)>,
     /// Plan, with the named inlets as roots.
     pub plan: MeshPlan,
-    /// Position of each node of the refined network before it moved; empty before [`PreparedRun::refined`].
-    pub origin: Vec<Point3>,
     pub(super) settings: Settings,
 }
 
 impl PreparedRun {
-    /// Refines the network, if the run asks for it. Runs that share a work directory refine once; `store` is that
-    /// directory.
+    /// Refines the network, if the run asks for it and the network is not tried as given first. Runs that share a work
+    /// directory refine once; `store` is that directory.
     ///
     /// # Errors
     /// If a parameter is out of range, the run is cancelled, or the work directory cannot be used.
     pub fn refined(mut self, store: Option<&Store>, progress: &dyn Progress) -> Result<Self, MeshingError> {
-        let Some(params) = self.refinement().filter(|_| self.networks.refine.is_none()) else { return Ok(self) };
-        let network = &self.networks.prepared;
-        let make = || Ok::<Refined, MeshingError>(refine(network, &params, progress)?);
-        let key = || {
-            let mut key = KeyMaker::new("refined");
-            key.text(&format!("{:?} {params:?}", fingerprint(network)));
-            key.finish()
-        };
-        let refined = match store {
-            Some(store) => store.once(("refined", key), progress, make)?,
-            None => make()?,
-        };
-        self.origin = self.networks.take_refined(refined);
+        let is_due = self.networks.refine.is_none() && !self.networks.may_be_sound_as_given();
+        if let Some(params) = self.refinement().filter(|_| is_due || self.plan.smooths_joints()) {
+            self.networks = refined(&self.networks, &params, store, progress)?;
+        }
         Ok(self)
     }
 
@@ -127,14 +115,24 @@ impl PreparedRun {
     ) -> Result<NetworkMesh<Whole<'a>>, MeshingError> {
         let run = self.refined(Some(store), progress)?;
         let refine = run.refinement();
-        let Self { networks, plan, settings, origin, .. } = run;
-        // One point per node, which the mesher does not need.
-        drop(origin);
-        let retracts = settings.retracts;
-        let mut meshing = Meshing { store, plan: &plan, fits, progress, retracts, refine, attempts: Vec::new() };
+        let Self { networks, plan, settings, .. } = run;
+        let again = |networks: &Networks| match &refine {
+            Some(params) => refined(networks, params, Some(store), progress),
+            None => Ok(networks.clone()),
+        };
+        let mut meshing = Meshing {
+            store,
+            plan: &plan,
+            fits,
+            progress,
+            retracts: settings.retracts,
+            refine: refine.clone(),
+            refined: &again,
+            attempts: Vec::new(),
+        };
         let best = strategy::mesh(networks, &mut meshing);
         let attempts = meshing.attempts;
-        let Candidate { stored, networks, attempt } = best.map_err(strategy::Failure::into_error)?;
+        let Candidate { stored, networks, attempt } = best?;
         let Stored { whole: mesh, expectation, check, report, network } = stored;
         let found = NetworkMesh {
             mesh,
@@ -196,4 +194,25 @@ impl PreparedRun {
         };
         found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
+}
+
+/// Networks with the prepared one refined, by a work directory only once.
+fn refined(
+    networks: &Networks,
+    params: &RefineParams,
+    store: Option<&Store>,
+    progress: &dyn Progress,
+) -> Result<Networks, MeshingError> {
+    let network = &networks.prepared;
+    let make = || Ok::<Refined, MeshingError>(refine(network, params, progress)?);
+    let key = || {
+        let mut key = KeyMaker::new("refined");
+        key.text(&format!("{:?} {params:?}", fingerprint(network)));
+        key.finish()
+    };
+    let refined = match store {
+        Some(store) => store.once(("refined", key), progress, make)?,
+        None => make()?,
+    };
+    Ok(networks.again(Some(refined)))
 }
