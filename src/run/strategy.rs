@@ -24,6 +24,9 @@ const MAX_VOLUME_ERROR: f64 = 0.05;
 /// other than tubes do, by the width of the field's kernel.
 const WIDER: f64 = 1.2;
 
+/// Factors on ρ where walls of vessels intersect that do not overlap.
+const FINER: [f64; 2] = [2.0, 4.0];
+
 /// Network that an attempt meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -39,6 +42,8 @@ pub enum Strategy {
     Unrefined,
     /// The prepared network, refined with more clearance.
     WiderClearance,
+    /// The network of the best attempt before, with finer edges.
+    FinerEdges,
 }
 
 impl Strategy {
@@ -111,53 +116,91 @@ pub(super) struct Meshing<'a, 'b> {
 /// Meshes a network. Refinement must never give a worse mesh than none.
 ///
 /// A sound mesh of the network as given is kept, and nothing is moved. Otherwise the network is refined. If that gives no
-/// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one.
+/// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one. If only
+/// walls intersect that belong to vessels which do not overlap, finer edges are tried.
 pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
-    let (as_given, networks) = if meshing.refine.is_some() && networks.refine.is_none() {
-        match meshing.attempt(Strategy::AsGiven, networks.clone()) {
-            Ok(candidate) if meshing.attempts[candidate.attempt].fault.is_none() => {
-                meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
-                return Ok(candidate);
-            }
-            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
-            other => (other.ok(), (meshing.refined)(&networks)?),
-        }
+    let best = if meshing.refine.is_some() && networks.refine.is_none() {
+        as_given_or_refined(networks, meshing)?
     } else {
-        (None, networks)
+        planned(networks, true, meshing).map_err(Failure::into_error)?
     };
-    let is_tried = meshing.attempts.iter().any(|attempt| attempt.strategy == Strategy::AsGiven);
-    let planned = meshing.attempt(Strategy::Planned, networks);
-    let (fault, networks) = match &planned {
+    finer(best, meshing)
+}
+
+/// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
+fn as_given_or_refined<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
+    let as_given = match meshing.attempt(Strategy::AsGiven, networks.clone()) {
+        Ok(candidate) if meshing.attempts[candidate.attempt].fault.is_none() => {
+            meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
+            return Ok(candidate);
+        }
+        Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
+        other => other.ok(),
+    };
+    let networks = (meshing.refined)(&networks)?;
+    match (as_given, planned(networks, false, meshing)) {
+        (Some(as_given), Err(Failure { error: RunError::BlocksFailed(_), .. })) => Ok(as_given),
+        (Some(as_given), Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
+            let why = "refinement gives a mesh that differs more from the given network: nothing was moved";
+            meshing.progress.note(why);
+            Ok(as_given)
+        }
+        (_, planned) => planned.map_err(Failure::into_error),
+    }
+}
+
+/// Meshes a network, and fallbacks if it was refined and gives no sound mesh. `unrefined`: the network before refinement is a
+/// fallback.
+fn planned<'a>(networks: Networks, unrefined: bool, meshing: &mut Meshing<'a, '_>) -> Outcome<'a> {
+    let first = meshing.attempt(Strategy::Planned, networks);
+    let (fault, networks) = match &first {
         Ok(candidate) => (meshing.attempts[candidate.attempt].fault, &candidate.networks),
         Err(Failure { error, networks }) => {
             (matches!(error, RunError::BlocksFailed(_)).then_some(Fault::NoMesh), &**networks)
         }
     };
-    if let Some(fault) = fault.filter(|_| networks.refine.is_some()) {
-        for strategy in Strategy::FALLBACKS.into_iter().filter(|&s| s != Strategy::Unrefined || !is_tried) {
-            let Some(again) = meshing.networks_for(strategy, fault, networks) else { continue };
-            match meshing.attempt(strategy, again) {
-                Ok(candidate) if meshing.is_better(&candidate, fault) => {
-                    meshing.progress.note(&kept(strategy, fault));
-                    return Ok(candidate);
-                }
-                Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
-                Ok(_) | Err(_) => {}
+    let Some(fault) = fault.filter(|_| networks.refine.is_some()) else { return first };
+    for strategy in Strategy::FALLBACKS.into_iter().filter(|&s| unrefined || s != Strategy::Unrefined) {
+        let Some(again) = meshing.networks_for(strategy, fault, networks) else { continue };
+        match meshing.attempt(strategy, again) {
+            Ok(candidate) if meshing.is_better(&candidate, fault) => {
+                meshing.progress.note(&kept(strategy, fault));
+                return Ok(candidate);
             }
+            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure),
+            Ok(_) | Err(_) => {}
         }
     }
-    let Some(as_given) = as_given else { return planned.map_err(Failure::into_error) };
-    match planned {
-        Err(failure) if matches!(failure.error, RunError::BlocksFailed(_)) => Ok(as_given),
-        Err(failure) => Err(failure.into_error()),
-        Ok(planned) if meshing.is_closer(&as_given, &planned) => {
-            meshing
-                .progress
-                .note("refinement gives a mesh that differs more from the given network: nothing was moved");
-            Ok(as_given)
-        }
-        Ok(planned) => Ok(planned),
+    first
+}
+
+/// Meshes with finer edges if walls intersect although no vessels overlap: coarse walls deviate more from their tubes.
+fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
+    let intersects =
+        |check: &CheckReport| !check.is_valid() && check.failed().all(|line| line.line == Line::NoSelfIntersection);
+    let network = &best.networks.network;
+    if !intersects(&best.stored.check) || !network.overlaps(&network.adjacency()).pairs.is_empty() {
+        return Ok(best);
     }
+    for factor in FINER {
+        let plan = MeshPlan { rho: factor * meshing.plan.rho, ..meshing.plan.clone() };
+        let attempts = std::mem::take(&mut meshing.attempts);
+        let mut finer = Meshing { plan: &plan, attempts, refine: meshing.refine.clone(), ..*meshing };
+        let made = finer.attempt(Strategy::FinerEdges, best.networks.clone());
+        meshing.attempts = finer.attempts;
+        match made {
+            Ok(candidate) if meshing.fault_of(&candidate.stored).is_none() => {
+                let rho = plan.rho;
+                meshing
+                    .progress
+                    .note(&format!("walls that almost touch intersected: meshed with finer edges, rho {rho}"));
+                return Ok(candidate);
+            }
+            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
+            Ok(_) | Err(_) => {}
+        }
+    }
+    Ok(best)
 }
 
 /// Fault of a mesh but for its volume.

@@ -18,6 +18,9 @@ const REACH: f64 = 4.0;
 const RAMP: f64 = 0.6;
 /// Vessels closer than this, in sums of their radii, almost touch.
 const CLOSE: f64 = 1.02;
+/// Distance in sums of radii below which walls of vessels that do not overlap may still intersect: the corners of a coarse
+/// wall lie up to 6 % of the radius outside its tube (ρ = 3).
+const NEAR: f64 = 1.03;
 /// Maximum limit for an overlap, in sums of its radii: a vessel that crosses another axis has to move by one.
 const DEMANDED: f64 = 2.0;
 
@@ -33,6 +36,13 @@ pub struct FarNode {
 /// True if no vessels overlap.
 fn overlaps_nowhere(network: &Skeleton) -> bool {
     network.overlaps(&network.adjacency()).pairs.is_empty()
+}
+
+/// Overlaps of vessels with radii multiplied by a factor.
+fn widened(frame: &Frame, factor: f64) -> Overlaps {
+    let mut wide = frame.skeleton.clone();
+    wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| factor * r));
+    wide.overlaps(&frame.adjacency)
 }
 
 /// Displacement limits of nodes.
@@ -70,13 +80,16 @@ impl Leashes {
         far
     }
 
+    /// Vessels whose walls may intersect, though their tubes do not overlap.
+    pub(super) fn near(frame: &Frame) -> Overlaps {
+        widened(frame, NEAR)
+    }
+
     /// Overlaps, plus released vessels that almost touch: walls deviate slightly from the radius.
     pub(super) fn close(frame: &Frame, overlaps: &Overlaps) -> Overlaps {
         let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
         let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
-        let mut wide = frame.skeleton.clone();
-        wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| CLOSE * r));
-        let mut close = wide.overlaps(&frame.adjacency);
+        let mut close = widened(frame, CLOSE);
         close.pairs.retain(|o| overlapping.contains(&o.edges) || o.nodes.iter().flatten().any(is_loose));
         close
     }

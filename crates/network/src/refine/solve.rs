@@ -256,9 +256,12 @@ impl<'a> Solver<'a> {
         bends
     }
 
-    /// Releases overlapping vessels if all others are fixed. Returns false if nothing may move.
+    /// Releases overlapping vessels if all others are fixed, or vessels that almost touch if none overlap. Returns false if
+    /// nothing may move.
     fn loosen(&mut self, overlaps: &Overlaps) -> bool {
         let Some(leashes) = self.leashes else { return true };
+        let near = if overlaps.pairs.is_empty() { Some(Leashes::near(&self.frame)) } else { None };
+        let overlaps = near.as_ref().unwrap_or(overlaps);
         leashes.loosen(&mut self.frame, overlaps);
         !overlaps.pairs.is_empty()
     }
