@@ -10,6 +10,8 @@ use super::pajek::PajekError;
 use super::radii::RadiusFault;
 use super::sv1d::Sv1dError;
 use super::swc::SwcError;
+use super::tetgen::EdgeFileError;
+use super::vmv::VmvError;
 use super::vtk::VtkLegacyError;
 use super::vtp::VtpError;
 use crate::file::FileError;
@@ -17,7 +19,7 @@ use anastomesh_skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
 
 /// Known extensions, for messages.
-pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in";
+pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .npyd, .in, .node with .edge";
 
 /// Errors of reading and writing a network file.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +28,16 @@ pub enum NetworkFileError {
     /// The extension is unknown, or the file cannot be read, is empty or is not a network.
     #[error(transparent)]
     File(#[from] FileError<NetworkFault>),
+    /// The file is HDF5, which is not supported.
+    #[error(
+        "{}: HDF5 is not supported; convert it with vascpy, for example: \
+         python -c \"from vascpy import PointVasculature as V; v = V.load_sonata('{0}'); \
+         v.node_properties.to_csv('nodes.csv'); v.edge_properties.to_csv('edges.csv')\"", path.display()
+    )]
+    Hdf5 {
+        /// Path of the file.
+        path: PathBuf,
+    },
     /// The path is a directory.
     #[error("{}: is a directory; name a network file ({KNOWN})", path.display())]
     Directory {
@@ -113,6 +125,12 @@ pub enum NetworkFault {
     /// The input of the one-dimensional solver is invalid.
     #[error(transparent)]
     Sv1d(#[from] Sv1dError),
+    /// The VMV file is invalid.
+    #[error(transparent)]
+    Vmv(#[from] VmvError),
+    /// TetGen's files are invalid.
+    #[error(transparent)]
+    TetgenEdges(#[from] EdgeFileError),
     /// The format has no named node arrays.
     #[error(
         "this format has no named node arrays, so '{wanted}' does not exist: write the network as .vtp, .vtk, .csv, \
