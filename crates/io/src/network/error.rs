@@ -19,7 +19,8 @@ use anastomesh_skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
 
 /// Known extensions, for messages.
-pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .npyd, .in, .node with .edge";
+pub(super) const KNOWN: &str =
+    ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .npyd, .in, .node with .edge";
 
 /// Errors of reading and writing a network file.
 #[derive(Debug, thiserror::Error)]
@@ -69,10 +70,13 @@ pub enum NetworkFileError {
 }
 
 impl NetworkFileError {
-    /// True if the file has arrays but none has the name of a radius, so that
-    /// [`radius_array`](super::NetworkOptions::radius_array) must select one.
-    pub fn lacks_radii(&self) -> bool {
-        let Self::File(FileError::Content { fault, .. }) = self else { return false };
+    /// Names of the arrays of a file in which none has the name of a radius. [`radius_array`] selects one of them, and
+    /// [`radius`] replaces them.
+    ///
+    /// [`radius_array`]: super::NetworkOptions::radius_array
+    /// [`radius`]: super::NetworkOptions::radius
+    pub fn arrays_without_radii(&self) -> Option<&[String]> {
+        let Self::File(FileError::Content { fault, .. }) = self else { return None };
         let (NetworkFault::Vtp(VtpError::Radius(radius))
         | NetworkFault::Vtk(VtkLegacyError::Radius(radius))
         | NetworkFault::Amira(AmiraError::Radius(radius))
@@ -80,11 +84,16 @@ impl NetworkFileError {
         | NetworkFault::GraphXml(GraphXmlError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Pajek(PajekError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Json(JsonError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Vmv(VmvError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::TetgenEdges(EdgeFileError::Radius(radius))
         | NetworkFault::Csv(CsvError::Graph(GraphFault::Radius(radius)))) = fault
         else {
-            return false;
+            return None;
         };
-        matches!(radius, RadiusFault::NoRadius { available } if !available.is_empty())
+        match radius {
+            RadiusFault::NoRadius { available } => Some(available),
+            RadiusFault::UnknownArray { .. } => None,
+        }
     }
 }
 

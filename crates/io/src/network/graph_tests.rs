@@ -269,7 +269,9 @@ fn a_file_without_radii_gets_the_given_one() {
     let options = NetworkOptions::default().radius(2.5).scale(2.0);
     let file = read_network_from(bare.as_bytes(), NetworkFormat::Pajek, &options).unwrap();
     assert!(file.notes.contains(&NetworkNote::NoRadii));
-    assert!(file.skeleton.nodes.iter().all(|n| n.radius == 5.0) && file.skeleton.edges.iter().all(|e| e.radii == [5.0; 2]));
+    assert!(
+        file.skeleton.nodes.iter().all(|n| n.radius == 5.0) && file.skeleton.edges.iter().all(|e| e.radii == [5.0; 2])
+    );
     // Radii in the file have priority.
     let file = read_network_from(NETWORKX, NetworkFormat::Pajek, &options).unwrap();
     assert_eq!(file.skeleton.nodes[0].radius, 4.0);

@@ -19,9 +19,9 @@ mod read;
 mod scale;
 mod sv1d;
 mod swc;
-mod tetgen;
 #[cfg(test)]
 mod tests;
+mod tetgen;
 mod vmv;
 mod vtk;
 mod vtp;

@@ -67,8 +67,7 @@ pub(in crate::network) fn read(
     let first = i64::from(nodes.first);
     let ids = (first..first + nodes.points.len() as i64).collect();
     let polylines = Polylines { ends: (1..=path.len() / 2).map(|i| 2 * i).collect(), points: nodes.points, path };
-    let mut network =
-        NetworkFile { notes: choice.notes(), names: NodeNames::Ids(ids), ..NetworkFile::default() };
+    let mut network = NetworkFile { notes: choice.notes(), names: NodeNames::Ids(ids), ..NetworkFile::default() };
     if !polylines.fits(&network.skeleton) {
         return Err(EdgeFileError::TooMany);
     }

@@ -275,12 +275,7 @@ fn read_ints(
     Ok(values)
 }
 
-fn ints(
-    document: &VtkXml,
-    piece: ElementId,
-    section: &'static str,
-    array: &'static str,
-) -> Result<Vec<i64>, VtpError> {
+fn ints(document: &VtkXml, piece: ElementId, section: &'static str, array: &'static str) -> Result<Vec<i64>, VtpError> {
     let missing = || VtpError::MissingElement { element: section };
     let found = document.child(piece, section).ok_or_else(missing)?;
     let (_, element) = document.arrays(found).find(|(name, _)| *name == array).ok_or_else(missing)?;
