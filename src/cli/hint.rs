@@ -9,7 +9,12 @@ use std::path::Path;
 
 /// Error of a network file, with the remedy.
 pub fn of_file(error: &NetworkFileError) -> String {
-    format!("{error}{}", if error.lacks_radii() { " (--radius-array)" } else { instead_of_network(error) })
+    let remedy = match error.arrays_without_radii() {
+        Some([]) => " (--radius R sets all radii)",
+        Some(_) => " (--radius-array NAME selects one, --radius R sets all radii)",
+        None => instead_of_network(error),
+    };
+    format!("{error}{remedy}")
 }
 
 /// Remedy for a surface that is given as a network.

@@ -48,7 +48,8 @@ impl FileKind {
         if npy::holds(path, "tets") {
             return Ok(Self::Mesh);
         }
-        if NetworkFormat::of(path).is_ok() {
+        // Grids may hold lines, but `mesh` writes them with tetrahedra.
+        if NetworkFormat::of(path).is_ok_and(|format| format != NetworkFormat::Vtu) {
             return Ok(Self::Network);
         }
         MeshFormat::of(path).map(|_| Self::Mesh).map_err(|_| {

@@ -16,13 +16,17 @@ use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
-    /// Network file: .swc, .vtp or .vtk (lines), .am (Amira text), .csv (nodes and edges), .graphml, .gxl, .net (Pajek),
-    /// .json (node-link), .npyd (folder of `NumPy` arrays), .in (`SimVascular` 1D)
+    /// Network file: .swc, .vtp, .vtk or .vtu (lines), .am (Amira text), .csv (nodes and edges), .graphml, .gxl, .net or
+    /// .pajek, .json (node-link), .vmv (`VessMorphoVis`), .npyd (folder of `NumPy` arrays), .in (`SimVascular` 1D), .edge
+    /// (with .node of the same name)
     #[arg(value_name = "NETWORK")]
     pub network: PathBuf,
     /// Name of the array, column or attribute with radii of nodes or vessels (default: detected by name)
     #[arg(long, value_name = "NAME")]
     pub radius_array: Option<String>,
+    /// Radius of all vessels, for a file without radii
+    #[arg(long, value_name = "R", value_parser = above_zero, allow_negative_numbers = true, conflicts_with = "radius_array")]
+    pub radius: Option<f64>,
     /// Treat all radii as diameters (default: only arrays with the name of a diameter are halved)
     #[arg(long)]
     pub diameters: bool,
@@ -76,6 +80,7 @@ impl NetworkArgs {
     pub fn options(&self, any_radii: bool) -> NetworkOptions {
         NetworkOptions::default()
             .radius_array(self.radius_array.clone())
+            .radius(self.radius)
             .diameters(self.diameters)
             .radius_scale(self.radius_scale)
             .scale(self.scale.or(self.units.and_then(Units::factor)))

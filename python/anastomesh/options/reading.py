@@ -11,6 +11,7 @@ class ReadingOptions(TypedDict, total=False):
     radius_array: Annotated[
         str | None, Option("Name of the array, column or attribute that holds the radius; found by its name if absent")
     ]
+    radius: Annotated[float | None, Option("Radius of all vessels, for a file without radii")]
     diameters: Annotated[bool, Option("The file holds diameters instead of radii", False)]
     radius_scale: Annotated[
         float | None, Option("Factor for radii alone, for files whose radii have another unit than the positions")

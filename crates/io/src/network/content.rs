@@ -12,6 +12,8 @@ use std::fmt;
 pub struct NetworkOptions {
     /// Name of the radius array (on points, cells or both); detected by its name if `None`.
     pub radius_array: Option<String>,
+    /// Radius of all vessels of a file without radii.
+    pub radius: Option<f64>,
     /// Treat all radii as diameters. Otherwise only arrays with such a name are halved.
     pub diameters: bool,
     /// Factor on radii, for a unit that differs from that of the positions.
@@ -26,6 +28,7 @@ pub struct NetworkOptions {
 
 anastomesh_mesh::setters!(NetworkOptions {
     radius_array: impl Into<Option<String>>,
+    radius: impl Into<Option<f64>>,
     diameters: bool,
     radius_scale: impl Into<Option<f64>>,
     scale: impl Into<Option<f64>>,
@@ -100,6 +103,8 @@ pub enum NetworkNote {
         /// Array name.
         array: String,
     },
+    /// The file has no radii: all vessels have the given one.
+    NoRadii,
     /// There are no point radii: a node has the radius of its thickest edge.
     NodeRadiiFromEdges,
     /// The array name indicates diameters: the values were halved.
@@ -164,6 +169,7 @@ impl fmt::Display for NetworkNote {
         match self {
             Self::NodeRadii { array } => write!(f, "node radii: array '{array}' on the points"),
             Self::EdgeRadii { array } => write!(f, "vessel radii: array '{array}' on the lines"),
+            Self::NoRadii => write!(f, "the file has no radii: all vessels get the given one"),
             Self::NodeRadiiFromEdges => {
                 write!(f, "no node radii: each node gets the radius of its thickest vessel")
             }

@@ -10,6 +10,8 @@ use super::pajek::PajekError;
 use super::radii::RadiusFault;
 use super::sv1d::Sv1dError;
 use super::swc::SwcError;
+use super::tetgen::EdgeFileError;
+use super::vmv::VmvError;
 use super::vtk::VtkLegacyError;
 use super::vtp::VtpError;
 use crate::file::FileError;
@@ -17,7 +19,8 @@ use anastomesh_skeleton::{NodeId, SkeletonError};
 use std::path::PathBuf;
 
 /// Known extensions, for messages.
-pub(super) const KNOWN: &str = ".swc, .vtp, .vtk, .am, .csv, .graphml, .gxl, .net, .json, .npyd, .in";
+pub(super) const KNOWN: &str =
+    ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .npyd, .in, .node with .edge";
 
 /// Errors of reading and writing a network file.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +29,16 @@ pub enum NetworkFileError {
     /// The extension is unknown, or the file cannot be read, is empty or is not a network.
     #[error(transparent)]
     File(#[from] FileError<NetworkFault>),
+    /// The file is HDF5, which is not supported.
+    #[error(
+        "{}: HDF5 is not supported; convert it with vascpy, for example: \
+         python -c \"from vascpy import PointVasculature as V; v = V.load_sonata('{0}'); \
+         v.node_properties.to_csv('nodes.csv'); v.edge_properties.to_csv('edges.csv')\"", path.display()
+    )]
+    Hdf5 {
+        /// Path of the file.
+        path: PathBuf,
+    },
     /// The path is a directory.
     #[error("{}: is a directory; name a network file ({KNOWN})", path.display())]
     Directory {
@@ -57,10 +70,13 @@ pub enum NetworkFileError {
 }
 
 impl NetworkFileError {
-    /// True if the file has arrays but none has the name of a radius, so that
-    /// [`radius_array`](super::NetworkOptions::radius_array) must select one.
-    pub fn lacks_radii(&self) -> bool {
-        let Self::File(FileError::Content { fault, .. }) = self else { return false };
+    /// Names of the arrays of a file in which none has the name of a radius. [`radius_array`] selects one of them, and
+    /// [`radius`] replaces them.
+    ///
+    /// [`radius_array`]: super::NetworkOptions::radius_array
+    /// [`radius`]: super::NetworkOptions::radius
+    pub fn arrays_without_radii(&self) -> Option<&[String]> {
+        let Self::File(FileError::Content { fault, .. }) = self else { return None };
         let (NetworkFault::Vtp(VtpError::Radius(radius))
         | NetworkFault::Vtk(VtkLegacyError::Radius(radius))
         | NetworkFault::Amira(AmiraError::Radius(radius))
@@ -68,11 +84,16 @@ impl NetworkFileError {
         | NetworkFault::GraphXml(GraphXmlError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Pajek(PajekError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Json(JsonError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Vmv(VmvError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::TetgenEdges(EdgeFileError::Radius(radius))
         | NetworkFault::Csv(CsvError::Graph(GraphFault::Radius(radius)))) = fault
         else {
-            return false;
+            return None;
         };
-        matches!(radius, RadiusFault::NoRadius { available } if !available.is_empty())
+        match radius {
+            RadiusFault::NoRadius { available } => Some(available),
+            RadiusFault::UnknownArray { .. } => None,
+        }
     }
 }
 
@@ -113,6 +134,12 @@ pub enum NetworkFault {
     /// The input of the one-dimensional solver is invalid.
     #[error(transparent)]
     Sv1d(#[from] Sv1dError),
+    /// The VMV file is invalid.
+    #[error(transparent)]
+    Vmv(#[from] VmvError),
+    /// TetGen's files are invalid.
+    #[error(transparent)]
+    TetgenEdges(#[from] EdgeFileError),
     /// The format has no named node arrays.
     #[error(
         "this format has no named node arrays, so '{wanted}' does not exist: write the network as .vtp, .vtk, .csv, \

@@ -28,10 +28,16 @@ pub enum NetworkFormat {
     Npy,
     /// Input of SimVascular's one-dimensional solver: `.in`.
     Sv1d,
+    /// VTK unstructured grid with lines: `.vtu`.
+    Vtu,
+    /// Vertices and strands of VessMorphoVis: `.vmv`.
+    Vmv,
+    /// TetGen's points and edges in two files of one name: `.edge`, with `.node` beside it.
+    TetgenEdges,
 }
 
 /// Extensions in lower case.
-const EXTENSIONS: [(&str, NetworkFormat); 13] = [
+const EXTENSIONS: [(&str, NetworkFormat); 18] = [
     ("swc", NetworkFormat::Swc),
     ("vtp", NetworkFormat::Vtp),
     ("vtk", NetworkFormat::Vtk),
@@ -45,6 +51,11 @@ const EXTENSIONS: [(&str, NetworkFormat); 13] = [
     ("json", NetworkFormat::Json),
     ("npyd", NetworkFormat::Npy),
     ("in", NetworkFormat::Sv1d),
+    ("pajek", NetworkFormat::Pajek),
+    ("paj", NetworkFormat::Pajek),
+    ("vtu", NetworkFormat::Vtu),
+    ("vmv", NetworkFormat::Vmv),
+    ("edge", NetworkFormat::TetgenEdges),
 ];
 
 impl NetworkFormat {

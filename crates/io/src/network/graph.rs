@@ -208,11 +208,19 @@ impl Graph {
 
     fn positions(&self) -> Result<Positions, GraphFault> {
         let (x, y, z) = (self.nodes.find(X), self.nodes.find(Y), self.nodes.find(Z));
-        match (x, y, self.nodes.find(POSITION)) {
+        let list = self.nodes.find(POSITION);
+        match (x, y, list) {
+            // Two coordinates beside a list of three are those of a drawing: NetworkX writes 0 0 in Pajek files.
+            (_, _, Some(list)) if z.is_none() && self.is_spatial(list) => self.placed_by_lists(list),
             (Some(x), Some(y), _) => self.placed_by_coordinates([Some(x), Some(y), z]),
             (_, _, Some(list)) => self.placed_by_lists(list),
             _ => Err(GraphFault::NoPositions { available: self.nodes.names().to_vec() }),
         }
+    }
+
+    /// True if the first value of an attribute is a list of three numbers.
+    fn is_spatial(&self, name: &str) -> bool {
+        matches!(self.nodes.values(name, 1)[0], Some(Value::List(list)) if list.len() == 3)
     }
 
     fn placed_by_coordinates(&self, names: [Option<&str>; 3]) -> Result<Positions, GraphFault> {

@@ -21,6 +21,9 @@ fixtures! {
     GRAPHML = "fork.graphml", GraphXml;
     GXL = "fork.gxl", GraphXml;
     PAJEK = "fork.net", Pajek;
+    NETWORKX = "fork_networkx.net", Pajek;
+    GRID = "fork.vtu", Vtu;
+    VMV = "fork.vmv", Vmv;
     JSON = "fork.json", Json;
     SV1D = "fork.in", Sv1d;
 }
@@ -52,6 +55,8 @@ fn the_same_network_in_every_format() {
         assert_eq!(skeleton.nodes.len(), 4, "{name}");
     }
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/networks/");
+    let tetgen = read_network((folder.to_owned() + "fork.edge").as_ref(), &NetworkOptions::default()).unwrap();
+    assert_eq!((vessels(&tetgen.skeleton), tetgen.names.find("3", 4)), (vec![[a, b], [b, d], [b, c]], Some(NodeId(2))));
     for table in ["fork_nodes.csv", "fork_edges.csv"] {
         let file = read_network((folder.to_owned() + table).as_ref(), &NetworkOptions::default()).unwrap();
         assert_eq!(vessels(&file.skeleton), [[a, b], [b, d], [b, c]]);
@@ -243,4 +248,37 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn other_cells_of_a_grid_are_counted() {
+    let grid = String::from_utf8(GRID.to_vec()).unwrap();
+    let file = read(GRID, NetworkFormat::Vtu).unwrap();
+    assert!(file.notes.contains(&NetworkNote::OtherCells { count: 1 }), "{:?}", file.notes);
+    let without = grid.replace(">1 4 3<", ">1 7 9<");
+    assert!(read(without.as_bytes(), NetworkFormat::Vtu).unwrap_err().contains("no lines"));
+    let short = grid.replace(">1 4 3<", ">1 4<");
+    assert!(read(short.as_bytes(), NetworkFormat::Vtu).unwrap_err().contains("'types' has 2 values, expected 3"));
+}
+
+#[test]
+fn a_file_without_radii_gets_the_given_one() {
+    let bare = String::from_utf8(NETWORKX.to_vec()).unwrap().replace(" r ", " label ");
+    let refused = read(bare.as_bytes(), NetworkFormat::Pajek).unwrap_err();
+    assert!(refused.contains("radius"), "{refused}");
+    let options = NetworkOptions::default().radius(2.5).scale(2.0);
+    let file = read_network_from(bare.as_bytes(), NetworkFormat::Pajek, &options).unwrap();
+    assert!(file.notes.contains(&NetworkNote::NoRadii));
+    assert!(
+        file.skeleton.nodes.iter().all(|n| n.radius == 5.0) && file.skeleton.edges.iter().all(|e| e.radii == [5.0; 2])
+    );
+    // Radii in the file have priority.
+    let file = read_network_from(NETWORKX, NetworkFormat::Pajek, &options).unwrap();
+    assert_eq!(file.skeleton.nodes[0].radius, 4.0);
+}
+
+#[test]
+fn hdf5_is_named_with_a_way_to_convert_it() {
+    let refused = read_network("brain.h5".as_ref(), &NetworkOptions::default()).unwrap_err().to_string();
+    assert!(refused.contains("HDF5 is not supported") && refused.contains("vascpy"), "{refused}");
 }

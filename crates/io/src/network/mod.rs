@@ -21,6 +21,8 @@ mod sv1d;
 mod swc;
 #[cfg(test)]
 mod tests;
+mod tetgen;
+mod vmv;
 mod vtk;
 mod vtp;
 mod write;
@@ -41,6 +43,8 @@ pub mod faults {
     pub use super::radii::{NodeArrayFault, RadiusFault};
     pub use super::sv1d::Sv1dError;
     pub use super::swc::SwcError;
+    pub use super::tetgen::EdgeFileError;
+    pub use super::vmv::VmvError;
     pub use super::vtk::VtkLegacyError;
     pub use super::vtp::VtpError;
 }

@@ -104,7 +104,7 @@ impl Choice {
             return Ok(choice);
         }
         let choice = Self { points: best(points), cells: best(cells), unused: Vec::new(), by_name: true, diameters };
-        if choice.points.is_none() && choice.cells.is_none() {
+        if choice.points.is_none() && choice.cells.is_none() && options.radius.is_none() {
             return Err(RadiusFault::NoRadius { available: available() });
         }
         let used = |n: &String| Some(n) == choice.points.as_ref() || Some(n) == choice.cells.as_ref();
@@ -130,6 +130,9 @@ impl Choice {
 
     /// Notes on the selection.
     pub(super) fn notes(&self) -> Vec<NetworkNote> {
+        if self.points.is_none() && self.cells.is_none() {
+            return vec![NetworkNote::NoRadii];
+        }
         let mut notes = Vec::new();
         let halved = |array: &String, notes: &mut Vec<_>| {
             if self.halves(array) {

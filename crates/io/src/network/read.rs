@@ -4,8 +4,8 @@ use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use super::error::{NetworkFault, NetworkFileError};
 use super::format::NetworkFormat;
 use super::scale::scale;
-use super::{amira, csv, graph_xml, json, npy, pajek, sv1d, swc, vtk, vtp};
-use crate::file::{FileError, read_bytes};
+use super::{amira, csv, graph_xml, json, npy, pajek, sv1d, swc, tetgen, vmv, vtk, vtp};
+use crate::file::{FileError, extension, read_bytes};
 use crate::npy::Arrays;
 use std::path::Path;
 
@@ -27,7 +27,15 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
     if path.is_dir() && !matches!(format, Ok(NetworkFormat::Npy)) {
         return Err(NetworkFileError::Directory { path: path.to_path_buf() });
     }
+    if is_hdf5(path) {
+        return Err(NetworkFileError::Hdf5 { path: path.to_path_buf() });
+    }
     let format = format?;
+    if format == NetworkFormat::TetgenEdges {
+        let [nodes, edges] = tetgen::files(path);
+        let read = tetgen::read(&read_bytes(&nodes)?, &read_bytes(&edges)?, options).map_err(NetworkFault::from);
+        return Ok(read.and_then(|network| finished(network, options)).map_err(FileError::content(path))?);
+    }
     if format == NetworkFormat::Npy {
         let arrays = Arrays::read(path, &npy::ARRAYS, None)?;
         let read = npy::read(&arrays, options).map_err(NetworkFault::from);
@@ -83,8 +91,10 @@ pub fn read_network_from(
         NetworkFormat::GraphXml => graph_xml::read(bytes, options)?,
         NetworkFormat::Pajek => pajek::read(bytes, options)?,
         NetworkFormat::Json => json::read(bytes, options)?,
-        NetworkFormat::Npy => return Err(NetworkFault::SeveralFiles),
+        NetworkFormat::Npy | NetworkFormat::TetgenEdges => return Err(NetworkFault::SeveralFiles),
         NetworkFormat::Sv1d => sv1d::read(bytes, options)?,
+        NetworkFormat::Vtu => vtp::read_grid(bytes, options)?,
+        NetworkFormat::Vmv => vmv::read(bytes, options)?,
     };
     finished(network, options)
 }
@@ -97,10 +107,19 @@ pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) ->
     finished(npy::read(&Arrays::of(files), options)?, options)
 }
 
+/// True if a file has the extension of HDF5.
+fn is_hdf5(path: &Path) -> bool {
+    ["h5", "hdf5"].contains(&extension(path).as_str())
+}
+
 /// Common final steps: scales lengths as requested and checks all numbers.
 fn finished(mut network: NetworkFile, options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
     if let Some(wanted) = options.node_array.as_ref().filter(|_| network.node_values.is_empty()) {
         return Err(NetworkFault::NoNodeArrays { wanted: wanted.clone() });
+    }
+    if let Some(radius) = options.radius.filter(|_| network.notes.contains(&NetworkNote::NoRadii)) {
+        network.skeleton.nodes.iter_mut().for_each(|node| node.radius = radius);
+        network.skeleton.edges.iter_mut().for_each(|edge| edge.radii = [radius; 2]);
     }
     scale(&mut network, options);
     if !options.any_radii {

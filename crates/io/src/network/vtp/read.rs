@@ -1,4 +1,4 @@
-//! Reader of lines with radii.
+//! Reader of lines with radii, in poly data or an unstructured grid.
 
 use super::error::VtpError;
 use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions};
@@ -7,10 +7,23 @@ use crate::network::radii::{Choice, END_RADII, GROUPS, NodeArrayFault, RadiusFau
 use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::geometry::Point3;
 
+/// Reads lines of poly data.
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
-    let document = VtkXml::parse(bytes, "PolyData")?;
-    let poly = document.child(VtkXml::ROOT, "PolyData").ok_or(VtpError::MissingElement { element: "PolyData" })?;
-    let pieces: Vec<ElementId> = document.children(poly, "Piece").collect();
+    read_as(bytes, options, ("PolyData", poly_data_lines))
+}
+
+/// Reads lines and polylines of an unstructured grid.
+pub(in crate::network) fn read_grid(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, VtpError> {
+    read_as(bytes, options, ("UnstructuredGrid", grid_lines))
+}
+
+/// Type of a file, and the reader of its lines.
+type Kind = (&'static str, fn(&VtkXml, ElementId) -> Result<Lines, VtpError>);
+
+fn read_as(bytes: &[u8], options: &NetworkOptions, (element, lines): Kind) -> Result<NetworkFile, VtpError> {
+    let document = VtkXml::parse(bytes, element)?;
+    let data = document.child(VtkXml::ROOT, element).ok_or(VtpError::MissingElement { element })?;
+    let pieces: Vec<ElementId> = document.children(data, "Piece").collect();
     let &first = pieces.first().ok_or(VtpError::MissingElement { element: "Piece" })?;
     let names = |section: &str| -> Vec<String> {
         let section = document.child(first, section);
@@ -24,7 +37,8 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
         if let Some(name) = &values {
             network.node_values.extend(read_node_values(&document, piece, name)?);
         }
-        read_piece(&document, piece, &choice, &mut network, &mut others)?;
+        let lines = lines(&document, piece)?;
+        read_piece(&document, piece, lines, &choice, &mut network, &mut others)?;
     }
     if others.lines == 0 {
         return Err(VtpError::NoLines { polygons: others.polygons, vertices: others.vertices });
@@ -37,49 +51,103 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
 }
 
 /// Number of cells of each kind.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Others {
     lines: usize,
     polygons: usize,
     vertices: usize,
 }
 
+/// Lines of a piece among its cells.
+struct Lines {
+    /// End of each line in the connectivity.
+    ends: Vec<usize>,
+    connectivity: Vec<i64>,
+    /// Cell of each line.
+    cells: Vec<usize>,
+    counts: Others,
+}
+
+impl Lines {
+    fn cell_count(&self) -> usize {
+        let Others { lines, polygons, vertices } = self.counts;
+        lines.saturating_add(polygons).saturating_add(vertices)
+    }
+}
+
+/// Lines of poly data, which follow the vertex cells.
+fn poly_data_lines(document: &VtkXml, piece: ElementId) -> Result<Lines, VtpError> {
+    let (ends, connectivity) = read_lines(document, piece)?;
+    let vertices = document.count(piece, "NumberOfVerts")?;
+    let polygons = document.count(piece, "NumberOfPolys")?.saturating_add(document.count(piece, "NumberOfStrips")?);
+    let cells = (0..ends.len()).map(|line| vertices.saturating_add(line)).collect();
+    let counts = Others { lines: ends.len(), polygons, vertices };
+    Ok(Lines { ends, connectivity, cells, counts })
+}
+
+/// VTK's numbers of cell types: vertices, and lines.
+const VERTEX_TYPES: [i64; 2] = [1, 2];
+const LINE_TYPES: [i64; 2] = [3, 4];
+
+/// Lines of an unstructured grid, among other cells.
+fn grid_lines(document: &VtkXml, piece: ElementId) -> Result<Lines, VtpError> {
+    let count = document.count(piece, "NumberOfCells")?;
+    let (all, connectivity) = read_cells(document, piece, "Cells", count)?;
+    let types = read_ints(document, piece, "Cells", "types", count)?;
+    let mut lines = Lines { ends: Vec::new(), connectivity: Vec::new(), cells: Vec::new(), counts: Others::default() };
+    let mut start = 0;
+    for (cell, (end, kind)) in all.into_iter().zip(types).enumerate() {
+        if LINE_TYPES.contains(&kind) {
+            lines.connectivity.extend(&connectivity[start..end]);
+            lines.ends.push(lines.connectivity.len());
+            lines.cells.push(cell);
+        }
+        let of_kind = match kind {
+            kind if LINE_TYPES.contains(&kind) => &mut lines.counts.lines,
+            kind if VERTEX_TYPES.contains(&kind) => &mut lines.counts.vertices,
+            _ => &mut lines.counts.polygons,
+        };
+        *of_kind += 1;
+        start = end;
+    }
+    Ok(lines)
+}
+
 fn read_piece(
     document: &VtkXml,
     piece: ElementId,
+    lines: Lines,
     choice: &Choice,
     network: &mut NetworkFile,
     others: &mut Others,
 ) -> Result<(), VtpError> {
     let points = read_points(document, piece)?;
-    let (lines, connectivity) = read_lines(document, piece)?;
-    let vertices = document.count(piece, "NumberOfVerts")?;
-    let polygons = document.count(piece, "NumberOfPolys")?.saturating_add(document.count(piece, "NumberOfStrips")?);
-    let cells = lines.len().saturating_add(vertices).saturating_add(polygons);
+    let cells = lines.cell_count();
+    let Lines { ends, connectivity, cells: of_line, counts } = lines;
     let nodes = read_radii(document, piece, "PointData", (choice, choice.points.as_deref()), points.len())?;
     let of_cells = read_radii(document, piece, "CellData", (choice, choice.cells.as_deref()), cells)?;
     let end_radii = read_end_radii(document, piece, choice, cells)?;
     let count = points.len();
     let astray = |a: Astray| VtpError::UnknownPoint { line: others.lines + a.line, point: a.point, points: count };
-    let polylines = Polylines::checked(points, lines, &connectivity).map_err(astray)?;
+    let polylines = Polylines::checked(points, ends, &connectivity).map_err(astray)?;
     if !polylines.fits(&network.skeleton) {
         return Err(VtpError::TooMany);
     }
-    // Cell data cover vertex cells first, then lines.
-    let of_lines = of_cells.map(|r| r[vertices..vertices + polylines.ends.len()].to_vec());
+    let of_lines = of_cells.map(|radii| of_line.iter().map(|&cell| radii[cell]).collect());
     let mut radii = Radii { nodes, lines: of_lines, corners: None };
     if let Some(ends) = end_radii {
-        radii.corners = Some(corner_radii(&polylines, &ends[vertices..], &radii));
+        let ends: Vec<[f64; 2]> = of_line.iter().map(|&cell| ends[cell]).collect();
+        radii.corners = Some(corner_radii(&polylines, &ends, &radii));
     }
     if let Some(groups) = read_groups(document, piece, cells)? {
         network.groups.resize(network.skeleton.nodes.len(), None);
-        network.groups.extend(polylines.groups(&groups[vertices..]));
+        let groups: Vec<[i64; 2]> = of_line.iter().map(|&cell| groups[cell]).collect();
+        network.groups.extend(polylines.groups(&groups));
     }
     polylines.append_to(&mut network.skeleton, &radii);
-    let lines = &polylines.ends;
-    others.lines += lines.len();
-    others.vertices += vertices;
-    others.polygons += polygons;
+    others.lines += counts.lines;
+    others.vertices += counts.vertices;
+    others.polygons += counts.polygons;
     Ok(())
 }
 
@@ -165,21 +233,21 @@ fn read_points(document: &VtkXml, piece: ElementId) -> Result<Vec<Point3>, VtpEr
     Ok(values.as_chunks::<3>().0.iter().map(|&p| Point3::from(p)).collect())
 }
 
-/// End offsets of the lines, and the connectivity.
+/// End offsets of the lines of poly data, and the connectivity.
 fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i64>), VtpError> {
     let count = document.count(piece, "NumberOfLines")?;
-    let Some(section) = document.child(piece, "Lines").filter(|_| count > 0) else {
-        return if count == 0 { Ok(Default::default()) } else { Err(VtpError::MissingElement { element: "Lines" }) };
-    };
-    let read = |array: &'static str| -> Result<Vec<i64>, VtpError> {
-        let found = document.arrays(section).find(|(name, _)| *name == array);
-        let (_, element) = found.ok_or(VtpError::MissingElement { element: "Lines" })?;
-        document.read(element)?.into_ints().ok_or(VtpError::NotIntegers { array })
-    };
-    let (connectivity, offsets) = (read("connectivity")?, read("offsets")?);
-    if offsets.len() != count {
-        return Err(VtpError::WrongLength { array: "offsets".into(), expected: count, found: offsets.len() });
-    }
+    if count == 0 { Ok(Default::default()) } else { read_cells(document, piece, "Lines", count) }
+}
+
+/// End offsets of cells, and their connectivity.
+fn read_cells(
+    document: &VtkXml,
+    piece: ElementId,
+    section: &'static str,
+    count: usize,
+) -> Result<(Vec<usize>, Vec<i64>), VtpError> {
+    let connectivity = ints(document, piece, section, "connectivity")?;
+    let offsets = read_ints(document, piece, section, "offsets", count)?;
     let mut ends = Vec::with_capacity(offsets.len());
     let mut before = 0;
     for (line, &offset) in offsets.iter().enumerate() {
@@ -190,6 +258,28 @@ fn read_lines(document: &VtkXml, piece: ElementId) -> Result<(Vec<usize>, Vec<i6
         ends.push(offset as usize);
     }
     Ok((ends, connectivity))
+}
+
+/// Integer array of a section, of a given length.
+fn read_ints(
+    document: &VtkXml,
+    piece: ElementId,
+    section: &'static str,
+    array: &'static str,
+    expected: usize,
+) -> Result<Vec<i64>, VtpError> {
+    let values = ints(document, piece, section, array)?;
+    if values.len() != expected {
+        return Err(VtpError::WrongLength { array: array.into(), expected, found: values.len() });
+    }
+    Ok(values)
+}
+
+fn ints(document: &VtkXml, piece: ElementId, section: &'static str, array: &'static str) -> Result<Vec<i64>, VtpError> {
+    let missing = || VtpError::MissingElement { element: section };
+    let found = document.child(piece, section).ok_or_else(missing)?;
+    let (_, element) = document.arrays(found).find(|(name, _)| *name == array).ok_or_else(missing)?;
+    document.read(element)?.into_ints().ok_or(VtpError::NotIntegers { array })
 }
 
 /// Values of an array, one per point.
