@@ -117,9 +117,10 @@ impl FlowPlan {
     /// # Errors
     /// [`FlowError::OutOfRange`] or [`FlowError::NoReference`].
     pub fn check(&self) -> Result<(), FlowError> {
-        let positive = |what, value: f64| match value > 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(FlowError::OutOfRange { what, value, range: "a finite number above 0" }),
+        let positive = |what, value: f64| {
+            let is_in = value > 0.0 && value.is_finite();
+            let fault = FlowError::OutOfRange { what, value, range: "a finite number above 0" };
+            if is_in { Ok(()) } else { Err(fault) }
         };
         positive("the density", self.density)?;
         positive("the viscosity", self.viscosity)?;
@@ -158,10 +159,10 @@ impl FlowPlan {
         names: &NodeNames,
     ) -> Result<(), FlowError> {
         self.rates(inlets)?;
-        match self.outlets.depends_on_network() {
-            true => self.solve(network, inlets, &|node| names.of(NodeId(node))).map(drop),
-            false => Ok(()),
+        if self.outlets.depends_on_network() {
+            self.solve(network, inlets, &|node| names.of(NodeId(node)))?;
         }
+        Ok(())
     }
 
     /// Solves for flow rates and pressures, and finds the model of each outlet. `name` is the name of a node in the file.
@@ -179,9 +180,10 @@ impl FlowPlan {
         let resistance =
             |(&node, model): (&NodeId, &OutletModel)| Some((node, model.resistance())).filter(|of| of.1 > 0.0);
         let resistances: BTreeMap<NodeId, f64> = outlets.iter().filter_map(resistance).collect();
-        let mut flow = match resistances.is_empty() {
-            true => open,
-            false => solve_with_resistances(network, &rates, &resistances, self.viscosity)?,
+        let mut flow = if resistances.is_empty() {
+            open
+        } else {
+            solve_with_resistances(network, &rates, &resistances, self.viscosity)?
         };
         for pressure in &mut flow.pressure {
             *pressure += self.outlets.distal_pressure;

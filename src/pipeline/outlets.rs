@@ -112,9 +112,9 @@ impl OutletPlan {
 
     /// Checks numbers that do not depend on a network.
     pub(super) fn check(&self) -> Result<(), FlowError> {
-        let within = |what, value: f64, is_in: bool, range| match is_in && value.is_finite() {
-            true => Ok(()),
-            false => Err(FlowError::OutOfRange { what, value, range }),
+        let within = |what, value: f64, is_in: bool, range| {
+            let fault = FlowError::OutOfRange { what, value, range };
+            if is_in && value.is_finite() { Ok(()) } else { Err(fault) }
         };
         let positive = |what, value: f64| within(what, value, value > 0.0, "a finite number above 0");
         within("the distal pressure", self.distal_pressure, true, "a finite number")?;
