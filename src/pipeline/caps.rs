@@ -5,7 +5,8 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use super::flow_plan::{FlowError, FlowPlan, FlowSolution, InletSite};
+use super::flow_error::FlowError;
+use super::flow_plan::{FlowPlan, FlowSolution, InletSite};
 use anastomesh_io::flow::{CapFlow, Flow, OutletModel, Waveform};
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::quality::triangle_area_vector;

@@ -1,6 +1,6 @@
 //! Outlet models of a network from a total resistance, a mean pressure, or structured trees.
 
-use super::flow_plan::{FlowError, FlowPlan};
+use super::flow_error::FlowError;
 use anastomesh_io::flow::{OutletModel, StructuredTree};
 use anastomesh_network::flow::{NetworkFlow, solve_with_resistances};
 use anastomesh_skeleton::{NodeId, Skeleton};
@@ -93,10 +93,12 @@ const STEPS: usize = 50;
 const TOLERANCE: f64 = 1e-12;
 
 /// Network whose outlet models are wanted.
-struct Case<'a> {
-    plan: &'a FlowPlan,
+pub(super) struct OutletCase<'a> {
     network: &'a Skeleton,
+    /// Mean flow rate by inlet.
     rates: &'a BTreeMap<NodeId, f64>,
+    density: f64,
+    viscosity: f64,
     /// Component of each node.
     component: Vec<u32>,
     components: usize,
@@ -110,9 +112,9 @@ impl OutletPlan {
 
     /// Checks numbers that do not depend on a network.
     pub(super) fn check(&self) -> Result<(), FlowError> {
-        let within = |what, value: f64, is_in: bool, range| match is_in && value.is_finite() {
-            true => Ok(()),
-            false => Err(FlowError::OutOfRange { what, value, range }),
+        let within = |what, value: f64, is_in: bool, range| {
+            let fault = FlowError::OutOfRange { what, value, range };
+            if is_in && value.is_finite() { Ok(()) } else { Err(fault) }
         };
         let positive = |what, value: f64| within(what, value, value > 0.0, "a finite number above 0");
         within("the distal pressure", self.distal_pressure, true, "a finite number")?;
@@ -151,12 +153,11 @@ impl OutletPlan {
     /// Model of each outlet. `open` is the flow with pressure 0 at the outlets.
     pub(super) fn models(
         &self,
-        plan: &FlowPlan,
-        network: &Skeleton,
-        rates: &BTreeMap<NodeId, f64>,
+        case: &OutletCase,
         open: &NetworkFlow,
         name: &dyn Fn(u32) -> String,
     ) -> Result<BTreeMap<NodeId, OutletModel>, FlowError> {
+        let (network, rates) = (case.network, case.rates);
         let outlets = || open.of_terminal.keys().copied().filter(|node| !rates.contains_key(node));
         match self.kind {
             OutletKind::Pressure => {
@@ -169,13 +170,11 @@ impl OutletPlan {
                     let node = name(network.node(*node).original);
                     return Err(FlowError::OutletTooThin { node, radius, minimum: tree.minimum_radius });
                 }
-                let model = |radius| tree.outlet(radius, plan.density, plan.viscosity, self.distal_pressure);
+                let model = |radius| tree.outlet(radius, case.density, case.viscosity, self.distal_pressure);
                 return Ok(radii.into_iter().map(|(node, radius)| (node, model(radius))).collect());
             }
             OutletKind::Resistance | OutletKind::Rcr { .. } => {}
         }
-        let components = network.components(&network.adjacency());
-        let case = Case { plan, network, rates, component: components.of_node, components: components.list.len() };
         let weights = case.weights(self.split, outlets(), open);
         let scale = match self.reference {
             Some(Reference::TotalResistance(resistance)) => {
@@ -210,7 +209,13 @@ fn radii(network: &Skeleton, terminals: impl Iterator<Item = NodeId>) -> BTreeMa
     terminals.map(radius).collect()
 }
 
-impl Case<'_> {
+impl<'a> OutletCase<'a> {
+    pub(super) fn new(network: &'a Skeleton, rates: &'a BTreeMap<NodeId, f64>, density: f64, viscosity: f64) -> Self {
+        let components = network.components(&network.adjacency());
+        let (component, components) = (components.of_node, components.list.len());
+        Self { network, rates, density, viscosity, component, components }
+    }
+
     fn component_of(&self, node: NodeId) -> usize {
         self.component[node.index()] as usize
     }
@@ -284,7 +289,7 @@ impl Case<'_> {
             }
             let resistance = |(&node, weight): (&NodeId, &f64)| (node, weight * scale[self.component_of(node)]);
             let resistances = weights.iter().map(resistance).collect();
-            flow = solve_with_resistances(self.network, self.rates, &resistances, self.plan.viscosity)?;
+            flow = solve_with_resistances(self.network, self.rates, &resistances, self.viscosity)?;
         }
         Ok(scale)
     }

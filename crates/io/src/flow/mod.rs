@@ -16,6 +16,7 @@ mod structured_tree;
 mod table;
 mod transient;
 mod waveform;
+mod womersley;
 
 pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub(crate) use conditions::{Role, plain};
@@ -24,3 +25,4 @@ pub use structured_tree::StructuredTree;
 pub use table::{FlowTable, FlowTableError, FlowTableFault};
 pub use transient::{Profile, Transient};
 pub use waveform::{Waveform, WaveformFault};
+pub(crate) use womersley::{Harmonic, poiseuille, womersley};

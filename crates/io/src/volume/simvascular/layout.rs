@@ -10,7 +10,18 @@ pub(super) fn surface_path(patch: &str) -> String {
     format!("mesh-surfaces/{patch}.vtp")
 }
 
+/// File of flow rates into an inlet.
+pub(super) fn rates_path(patch: &str) -> String {
+    format!("{patch}.flow")
+}
+
+/// File of velocities at the points of an inlet.
+pub(super) fn velocities_path(patch: &str) -> String {
+    format!("{patch}.velocity")
+}
+
 pub(super) fn is_ours(name: &str) -> bool {
+    let inflow = |name: &str| !name.contains('/') && (name.ends_with(".flow") || name.ends_with(".velocity"));
     let surface = |name: &str| name.strip_prefix("mesh-surfaces/").and_then(|own| own.strip_suffix(".vtp")).is_some();
-    [MESH, EXTERIOR, WALLS, SOLVER].contains(&name) || surface(name)
+    [MESH, EXTERIOR, WALLS, SOLVER].contains(&name) || surface(name) || inflow(name)
 }

@@ -1,10 +1,15 @@
-//! `SimVascular` folder `mesh-complete` for `svMultiPhysics`: tetrahedra, whole boundary, patches, and `solver.xml`.
+//! `SimVascular` folder `mesh-complete` for `svMultiPhysics`: tetrahedra, whole boundary, patches, flow rates of
+//! inlets, and `solver.xml`.
 //! All numbers count from 1 in 32 bits.
 
+#[cfg(test)]
+mod case_tests;
+mod inflow;
 mod layout;
 mod sheet;
 mod solver;
 mod spool;
+mod steps;
 #[cfg(test)]
 mod tests;
 
@@ -25,6 +30,7 @@ use spool::Spool;
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
+use steps::Steps;
 
 /// Checks that the folder can be created or replaced, without side effects.
 pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
@@ -48,15 +54,26 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     let surface = |id: i32| surface_path(names.get(&id).map_or(&usual_name(id), |name| name));
     put_wide(&folder, WALLS, mesh, &spool, |face| face.patch == WALL, progress)?;
     folder.copy(WALLS, &surface(WALL))?;
-    for (id, faces) in caps(&spool)? {
-        let cap = CapSheet::new(mesh, &faces)?;
+    let caps = caps(&spool)?;
+    let mut edges = BTreeMap::new();
+    for (&id, faces) in &caps {
+        let cap = CapSheet::new(mesh, faces)?;
+        edges.insert(id, cap.edge());
         let mut bytes = Cursor::new(Vec::new());
         write_sheet(&mut bytes, &cap)?;
         folder.put(&surface(id), bytes.get_ref())?;
         ask(progress)?;
     }
     let flow = &notes.flow_of(mesh.patches());
-    folder.put(SOLVER, solver::text(mesh.patches(), flow).as_bytes())?;
+    let steps = Steps::of(mesh.patches(), flow, &edges);
+    for patch in mesh.patches().iter().filter(|patch| patch.is_inlet()) {
+        let cap = CapSheet::new(mesh, caps.get(&patch.id).map_or(&[], Vec::as_slice))?;
+        if let Some((name, text)) = inflow::file(patch, &cap, flow, &steps) {
+            folder.put(&name, text.as_bytes())?;
+        }
+        ask(progress)?;
+    }
+    folder.put(SOLVER, solver::text(mesh.patches(), flow, &steps).as_bytes())?;
     folder.commit()
 }
 

@@ -4,6 +4,7 @@ use super::spool::Spool;
 use anastomesh_mesh::bits::{Bits, Ranks};
 use anastomesh_mesh::faces::OuterFace;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use std::io;
 
@@ -95,6 +96,32 @@ impl<'a> CapSheet<'a> {
         ids.dedup();
         let points = mesh.points_of(&ids)?;
         Ok(Self { faces, ids, points })
+    }
+
+    /// Numbers of the points in the mesh.
+    pub(super) fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
+    pub(super) fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// Triangles, by indices of points.
+    pub(super) fn triangles(&self) -> Vec<[usize; 3]> {
+        self.faces.iter().map(|face| face.vertices.map(|v| self.own_number(v) as usize)).collect()
+    }
+
+    pub(super) fn area(&self, triangle: &[usize; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|point| self.points[point]);
+        triangle_area_vector(&a, &b, &c).norm()
+    }
+
+    /// Edge length of equilateral triangles of the mean area.
+    pub(super) fn edge(&self) -> f64 {
+        let triangles = self.triangles();
+        let area: f64 = triangles.iter().map(|triangle| self.area(triangle)).sum();
+        (4.0 * area / (3_f64.sqrt() * triangles.len().max(1) as f64)).sqrt()
     }
 }
 

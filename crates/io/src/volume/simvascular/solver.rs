@@ -1,15 +1,15 @@
-//! Input of `svMultiPhysics`: steady laminar flow with given inflow and a resistance at each outlet.
+//! Input of `svMultiPhysics`: laminar flow with given inflow and a model at each outlet. All paths are relative to the
+//! folder.
 
-use super::layout::{MESH, surface_path};
-use crate::flow::{Flow, Role, plain};
+use super::inflow::Inflow;
+use super::layout::{MESH, rates_path, surface_path, velocities_path};
+use super::steps::Steps;
+use crate::flow::{CapFlow, Flow, OutletModel, Profile, Role, plain};
 use anastomesh_mesh::Patch;
 use std::fmt::Write;
 
-/// Number of time steps to a steady state. Each is a tenth of the diffusion time of the widest inlet.
-const STEPS: u32 = 30;
-
 /// Contents of the file.
-pub(super) fn text(patches: &[Patch], flow: &Flow) -> String {
+pub(super) fn text(patches: &[Patch], flow: &Flow, steps: &Steps) -> String {
     let mut faces = String::new();
     let mut conditions = String::new();
     for patch in patches {
@@ -21,50 +21,103 @@ pub(super) fn text(patches: &[Patch], flow: &Flow) -> String {
         );
         let _ = writeln!(conditions, "  <Add_BC name=\"{name}\">\n{}  </Add_BC>", condition(patch, flow));
     }
-    let radius =
-        patches.iter().filter(|p| p.is_inlet()).filter_map(|p| Some(p.cap.as_ref()?.radius)).fold(0.0, f64::max);
-    let step = 0.1 * radius * radius * flow.density / flow.viscosity;
-    // Default for inlets of unknown width.
-    let step = if step > 0.0 { step } else { 1e-3 };
     format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svMultiPhysicsFile version=\"0.1\">\n\n<GeneralSimulationParameters>\n  \
-         <Continue_previous_simulation> false </Continue_previous_simulation>\n  \
-         <Number_of_spatial_dimensions> 3 </Number_of_spatial_dimensions>\n  \
-         <Number_of_time_steps> {STEPS} </Number_of_time_steps>\n  \
-         <Time_step_size> {step:e} </Time_step_size>\n{GENERAL}</GeneralSimulationParameters>\n\n\
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svMultiPhysicsFile version=\"0.1\">\n\n{}\
          <Add_mesh name=\"msh\">\n  <Mesh_file_path> {MESH} </Mesh_file_path>\n{faces}</Add_mesh>\n\n\
          <Add_equation type=\"fluid\">\n{EQUATION}  <Density> {:e} </Density>\n  <Viscosity model=\"Constant\">\n    \
-         <Value> {:e} </Value>\n  </Viscosity>\n\n{OUTPUT}\n{conditions}</Add_equation>\n\n</svMultiPhysicsFile>\n",
-        flow.density, flow.viscosity
+         <Value> {:e} </Value>\n  </Viscosity>\n\n{OUTPUT}\n{}{conditions}</Add_equation>\n\n</svMultiPhysicsFile>\n",
+        general(steps),
+        flow.density,
+        flow.viscosity,
+        remark(patches, flow)
     )
+}
+
+fn general(steps: &Steps) -> String {
+    let Steps { step, count, increment, restart, why, .. } = steps;
+    format!(
+        "<!-- Run inside this folder: svmultiphysics solver.xml. {why}. -->\n<GeneralSimulationParameters>\n  \
+         <Continue_previous_simulation> false </Continue_previous_simulation>\n  \
+         <Number_of_spatial_dimensions> 3 </Number_of_spatial_dimensions>\n  \
+         <Number_of_time_steps> {count} </Number_of_time_steps>\n  <Time_step_size> {step:e} </Time_step_size>\n  \
+         <Increment_in_saving_VTK_files> {increment} </Increment_in_saving_VTK_files>\n  \
+         <Increment_in_saving_restart_files> {restart} </Increment_in_saving_restart_files>\n\
+         {GENERAL}</GeneralSimulationParameters>\n\n"
+    )
+}
+
+/// Comment on resistances with a pressure beyond them, which the solver does not have.
+fn remark(patches: &[Patch], flow: &Flow) -> String {
+    let outlets = patches.iter().filter(|patch| patch.is_outlet()).map(|patch| flow.at(patch).outlet);
+    let beyond = |outlet| match outlet {
+        OutletModel::Resistance { distal_pressure, .. } => Some(distal_pressure).filter(|pressure| *pressure != 0.0),
+        _ => None,
+    };
+    outlets.filter_map(beyond).next().map_or_else(String::new, |pressure| {
+        format!(
+            "  <!-- The solver's resistances end at pressure 0. Add {pressure:e}, the pressure beyond the outlets, to all \
+             pressures of the results; velocities are the same. -->\n"
+        )
+    })
 }
 
 fn condition(patch: &Patch, flow: &Flow) -> String {
     let at = flow.at(patch);
     match Role::of(patch) {
-        // Inflow is opposite to the normal.
-        Role::Inlet => format!(
-            "    <Type> Dir </Type>\n    <Time_dependence> Steady </Time_dependence>\n    <Profile> Parabolic </Profile>\n    \
-             <Impose_flux> true </Impose_flux>\n    <Value> {:e} </Value>\n",
-            -at.flow
-        ),
-        Role::Outlet => format!(
-            "    <Type> Neu </Type>\n    <Time_dependence> Resistance </Time_dependence>\n    <Value> {:e} </Value>\n",
-            at.outlet.resistance()
-        ),
+        Role::Inlet => inlet(&plain(&patch.name), &at, flow),
+        Role::Outlet => outlet(&at),
         Role::Wall => {
             "    <Type> Dir </Type>\n    <Time_dependence> Steady </Time_dependence>\n    <Value> 0.0 </Value>\n".into()
         }
     }
 }
 
+fn inlet(name: &str, at: &CapFlow, flow: &Flow) -> String {
+    let profile = if flow.profile == Profile::Uniform { "Flat" } else { "Parabolic" };
+    let ramp = match Inflow::of(at, flow) {
+        Inflow::Velocities => {
+            return format!(
+                "    <Type> Dir </Type>\n    <Time_dependence> General </Time_dependence>\n    \
+                 <Temporal_and_spatial_values_file_path> {} </Temporal_and_spatial_values_file_path>\n",
+                velocities_path(name)
+            );
+        }
+        Inflow::Ramp => "    <Ramp_function> true </Ramp_function>\n",
+        Inflow::Rates => "",
+    };
+    format!(
+        "    <Type> Dir </Type>\n    <Time_dependence> Unsteady </Time_dependence>\n    \
+         <Temporal_values_file_path> {} </Temporal_values_file_path>\n{ramp}    <Profile> {profile} </Profile>\n    \
+         <Impose_flux> true </Impose_flux>\n",
+        rates_path(name)
+    )
+}
+
+fn outlet(at: &CapFlow) -> String {
+    let (kind, value) = match at.outlet {
+        OutletModel::Pressure(pressure) => ("Steady", format!("    <Value> {pressure:e} </Value>\n")),
+        OutletModel::Resistance { resistance, .. } => ("Resistance", format!("    <Value> {resistance:e} </Value>\n")),
+        OutletModel::Rcr { proximal, capacitance, distal, distal_pressure } => {
+            // The capacitance starts at its mean pressure, which shortens the way to periodic flow.
+            let initial = distal_pressure + distal * at.flow;
+            let values = format!(
+                "    <RCR_values>\n      <Proximal_resistance> {proximal:e} </Proximal_resistance>\n      \
+                 <Capacitance> {capacitance:e} </Capacitance>\n      \
+                 <Distal_resistance> {distal:e} </Distal_resistance>\n      \
+                 <Distal_pressure> {distal_pressure:e} </Distal_pressure>\n      \
+                 <Initial_pressure> {initial:e} </Initial_pressure>\n    </RCR_values>\n"
+            );
+            ("RCR", values)
+        }
+    };
+    format!("    <Type> Neu </Type>\n    <Time_dependence> {kind} </Time_dependence>\n{value}")
+}
+
 const GENERAL: &str = "  <Spectral_radius_of_infinite_time_step> 0.5 </Spectral_radius_of_infinite_time_step>
   <Searched_file_name_to_trigger_stop> STOP_SIM </Searched_file_name_to_trigger_stop>
   <Save_results_to_VTK_format> true </Save_results_to_VTK_format>
   <Name_prefix_of_saved_VTK_files> result </Name_prefix_of_saved_VTK_files>
-  <Increment_in_saving_VTK_files> 10 </Increment_in_saving_VTK_files>
   <Start_saving_after_time_step> 1 </Start_saving_after_time_step>
-  <Increment_in_saving_restart_files> 30 </Increment_in_saving_restart_files>
   <Convert_BIN_to_VTK_format> false </Convert_BIN_to_VTK_format>
   <Verbose> true </Verbose>
   <Warning> false </Warning>
@@ -72,7 +125,7 @@ const GENERAL: &str = "  <Spectral_radius_of_infinite_time_step> 0.5 </Spectral_
 ";
 
 const EQUATION: &str = "  <Coupled> true </Coupled>
-  <Min_iterations> 3 </Min_iterations>
+  <Min_iterations> 1 </Min_iterations>
   <Max_iterations> 10 </Max_iterations>
   <Tolerance> 1e-6 </Tolerance>
   <Backflow_stabilization_coefficient> 0.2 </Backflow_stabilization_coefficient>
@@ -93,9 +146,9 @@ const OUTPUT: &str = "  <Output type=\"Spatial\">
     <Linear_algebra type=\"fsils\">
       <Preconditioner> fsils </Preconditioner>
     </Linear_algebra>
-    <Max_iterations> 15 </Max_iterations>
-    <NS_GM_max_iterations> 10 </NS_GM_max_iterations>
-    <NS_CG_max_iterations> 300 </NS_CG_max_iterations>
+    <Max_iterations> 30 </Max_iterations>
+    <NS_GM_max_iterations> 20 </NS_GM_max_iterations>
+    <NS_CG_max_iterations> 1000 </NS_CG_max_iterations>
     <Tolerance> 1e-3 </Tolerance>
     <NS_GM_tolerance> 1e-3 </NS_GM_tolerance>
     <NS_CG_tolerance> 1e-3 </NS_CG_tolerance>
