@@ -7,4 +7,4 @@ mod poiseuille;
 
 pub use conjugate_gradient::NotConverged;
 pub use orders::Orders;
-pub use poiseuille::{NetworkFlow, solve};
+pub use poiseuille::{NetworkFlow, resistance, solve};

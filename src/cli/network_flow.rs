@@ -1,0 +1,232 @@
+//! `anastomesh flow`: one-dimensional flow through a network, and reduced-order models of it.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use super::common::{Common, ended, print, thread_pool};
+use super::exit::{Exit, Failure};
+use super::flow::FlowArgs;
+use super::log;
+use super::network::NetworkArgs;
+use super::prepare::CureArgs;
+use super::progress::Bars;
+use super::refine::RefineArgs;
+use super::run::{failure, remarks};
+use super::stop::{NOTHING_KEPT, Stop};
+use crate::reduced::{ModelOptions, Supply, VesselFlow, reduced_model};
+use crate::report::flow::{FlowSummary, arrays, table};
+use crate::run::{MeshingError, PreparedRun, Run};
+use anastomesh_io::network::{
+    NodeNames, Stiffness, ensure_network_writable, ensure_reduced_writable, write_network, write_reduced,
+};
+use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_network::flow::solve;
+use anastomesh_skeleton::Skeleton;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    network: NetworkArgs,
+    /// Output file: .json (model for `svZeroDSolver`), .in (model for `svOneDSolver`), .vtp (network with the arrays `Pressure`,
+    /// `Flow` and `WallShear`) or .csv (table of vessels)
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    output: PathBuf,
+    /// Vessels of models and tables
+    #[arg(long, value_enum, default_value_t = VesselsArg::Edges, help_heading = "Output")]
+    vessels: VesselsArg,
+    /// Stiffness E h / r of vessel walls, for Young's modulus E, wall thickness h and radius r: a constant K3, or
+    /// K1,K2,K3 for K1 exp(K2 r) + K3. Units are consistent with the mesh (default: 2e6,-2253,8.65e4, arteries in SI
+    /// units). Steady models without this option have rigid vessels
+    #[arg(long, value_name = "K3|K1,K2,K3", help_heading = "Output", allow_hyphen_values = true)]
+    stiffness: Option<StiffnessArg>,
+    /// Inlet node, by its name or number in the file; repeatable (default: the roots of the file, or else the widest
+    /// terminal of each component)
+    #[arg(long, help_heading = "Run", value_name = "NODE")]
+    root: Vec<String>,
+    /// Move overlapping vessels apart first, in at most N iterations, as `mesh` does
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200", help_heading = "Run")]
+    refine: Option<usize>,
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
+    cures: CureArgs,
+    #[command(flatten)]
+    how: RefineArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum VesselsArg {
+    /// Each edge of the network is a vessel
+    Edges,
+    /// Each branch between bifurcations is a vessel
+    Branches,
+}
+
+/// Value of `--stiffness`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct StiffnessArg(Stiffness);
+
+impl FromStr for StiffnessArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = || "expected a number above zero, or three numbers with commas".to_owned();
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
+        let k = match numbers.map_err(|_| expected())?[..] {
+            [k3] => [0.0, 0.0, k3],
+            [k1, k2, k3] => [k1, k2, k3],
+            _ => return Err(expected()),
+        };
+        let is_sound = k.iter().all(|number| number.is_finite()) && k[0] >= 0.0 && k[2] >= 0.0 && k[0] + k[2] > 0.0;
+        if is_sound { Ok(Self(Stiffness { k })) } else { Err(expected()) }
+    }
+}
+
+/// Kind of output, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Model,
+    Network,
+    Table,
+}
+
+/// Output of `--json`.
+#[derive(Serialize)]
+struct Output<'a> {
+    program: &'static str,
+    #[serde(flatten)]
+    summary: &'a FlowSummary,
+}
+
+/// Solves for the flow through a network and writes it, or a model of it.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let kind = args.kind()?;
+    let pool = thread_pool(args.common.threads)?;
+    let stop = Stop::listen(args.common.quiet)?;
+    let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
+    let prepared = pool.install(|| args.prepared(&bars))?;
+    let summary = pool.install(|| args.write(kind, &prepared, &stop))?;
+    if args.common.json {
+        let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
+        print(true, &Output { program, summary: &summary }, String::new)?;
+    } else if !args.common.quiet {
+        log::result(&summary.text(&ended(&[&args.output])));
+    }
+    Ok(Exit::Fine)
+}
+
+impl Args {
+    /// Kind of the output; checks that it can be written.
+    fn kind(&self) -> Result<Kind, Failure> {
+        let path = &self.output;
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let checked = |kind, check: Result<(), String>| check.map(|()| kind).map_err(Failure::input);
+        match extension.as_str() {
+            "json" | "in" => checked(Kind::Model, ensure_reduced_writable(path).map_err(|e| e.to_string())),
+            "vtp" => checked(Kind::Network, ensure_network_writable(path).map_err(|e| e.to_string())),
+            "csv" => ensure_text_writable(path).map(|()| Kind::Table).map_err(|e| Failure::unwritable(path, &e)),
+            _ => Err(Failure::usage(format!(
+                "{}: unrecognised extension; name a .json, .in, .vtp or .csv file",
+                path.display()
+            ))),
+        }
+    }
+
+    /// Reads and prepares the network as `mesh` does.
+    fn prepared(&self, bars: &Bars) -> Result<PreparedRun, Failure> {
+        let cures = self.cures.params(true);
+        let file = self.network.file(cures.radii)?;
+        let [inlets, outlets] = self.flow.extension();
+        let mut run = Run::new(file).prepare(cures).roots(&self.root).extend(inlets, outlets).fluid(self.flow.fluid());
+        if let Some(iterations) = self.refine {
+            run = run.refine(self.how.params(iterations));
+        }
+        let prepared = run.prepared().map_err(|e| self.explain(e))?;
+        let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
+        let read = remarks(notes, &networks.prepare, self.common.verbose);
+        for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
+            bars.note(&remark);
+        }
+        prepared.refined(None, bars).map_err(|e| self.explain(e))
+    }
+
+    fn explain(&self, error: MeshingError) -> Failure {
+        failure(error, &self.network.network, || Failure::stopped(NOTHING_KEPT))
+    }
+
+    fn write(&self, kind: Kind, prepared: &PreparedRun, stop: &Stop) -> Result<FlowSummary, Failure> {
+        let network: &Skeleton = &prepared.networks.network;
+        let supply = self.supply(prepared);
+        let viscosity = self.flow.fluid().viscosity;
+        let solved = solve(network, &supply.rates, viscosity).map_err(|e| Failure::stage(e.to_string()))?;
+        let flow = VesselFlow::of(network, &solved, viscosity);
+        let lumped = self.vessels == VesselsArg::Branches;
+        stop.keep();
+        let vessels = match kind {
+            Kind::Model => {
+                let model = reduced_model(network, &solved, &supply, &self.model_options(&supply));
+                let model = model.map_err(|e| Failure::input(format!("{}: {e}", self.network.network.display())))?;
+                write_reduced(&self.output, &model).map_err(|e| Failure::input(e.to_string()))?;
+                model.vessels.len()
+            }
+            Kind::Network => {
+                let written = write_network(&self.output, network, &arrays(&flow));
+                written.map_err(|e| Failure::input(e.to_string()))?;
+                network.edges.len()
+            }
+            Kind::Table => {
+                let rows = flow.rows(network, viscosity, lumped);
+                self.write_table(&rows, &prepared.networks.names)?;
+                rows.len()
+            }
+        };
+        let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(*value));
+        Ok(FlowSummary {
+            vessels,
+            inlets: supply.rates.len(),
+            outlets: solved.of_terminal.len() - supply.rates.len(),
+            inflow: supply.rates.values().sum(),
+            largest_pressure: largest(&flow.pressure),
+            largest_shear: largest(&flow.shear),
+        })
+    }
+
+    fn write_table(&self, rows: &[crate::reduced::VesselRow], names: &NodeNames) -> Result<(), Failure> {
+        let failed = |why: &dyn std::fmt::Display| Failure::unwritable(&self.output, why);
+        let text = table(rows, names).map_err(|e| failed(&e))?;
+        write_text(&self.output, &text).map_err(|e| failed(&e))
+    }
+
+    /// Conditions at the terminals.
+    fn supply(&self, prepared: &PreparedRun) -> Supply {
+        let network = &prepared.networks.network;
+        let fluid = self.flow.fluid();
+        let inlets: std::collections::BTreeSet<u32> = prepared.inlets.list.iter().map(|inlet| inlet.original).collect();
+        let adjacency = network.adjacency();
+        let terminals = adjacency.terminals().into_iter();
+        let rates = terminals.filter(|&node| inlets.contains(&network.node(node).original)).map(|node| {
+            let edge = network.edge(adjacency.edges(node)[0]);
+            let usual = || {
+                let radius = edge.radii[edge.end(node)];
+                let reynolds = anastomesh_io::flow::USUAL_REYNOLDS;
+                anastomesh_io::flow::flow_of_reynolds(reynolds, radius, fluid.density, fluid.viscosity)
+            };
+            (node, fluid.inflow.unwrap_or_else(usual))
+        });
+        Supply { rates: rates.collect(), ..Supply::default() }
+    }
+
+    fn model_options(&self, supply: &Supply) -> ModelOptions {
+        let fluid = self.flow.fluid();
+        let stiffness = self.stiffness.map_or_else(Stiffness::default, |StiffnessArg(stiffness)| stiffness);
+        ModelOptions::new(fluid.density, fluid.viscosity)
+            .stiffness(stiffness)
+            .elastic(self.stiffness.is_some() || !supply.waveforms.is_empty())
+            .lumped(self.vessels == VesselsArg::Branches)
+    }
+}
