@@ -1,6 +1,7 @@
 //! `anastomesh flow`: one-dimensional flow through a network, and reduced-order models of it.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde::Serialize;
@@ -15,16 +16,19 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::reduced::{ModelOptions, Supply, VesselFlow, reduced_model};
-use crate::report::flow::{FlowSummary, arrays, table};
+use crate::pipeline::Fluid;
+use crate::reduced::{Along, ModelOptions, ResultFluid, Supply, VesselFlow, reduced_model};
+use crate::report::flow::{FlowSummary, ResultSummary, arrays, result_arrays, result_table, table};
+use crate::report::rows::Ended;
 use crate::run::{MeshingError, PreparedRun, Run};
 use anastomesh_io::network::{
     NodeNames, Stiffness, ensure_network_writable, ensure_reduced_writable, write_network, write_reduced,
 };
+use anastomesh_io::results::read_result;
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::flow::solve;
-use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -34,6 +38,10 @@ pub struct Args {
     /// `Flow` and `WallShear`) or .csv (table of vessels)
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: PathBuf,
+    /// Result of a solver on the mesh of this network: an `OpenFOAM` case (.foam) or a file of `svMultiPhysics` (.vtu). Its
+    /// pressure, flow and wall shear along the vessels are written beside the one-dimensional solution, as .vtp or .csv
+    #[arg(long, value_name = "RESULT", help_heading = "Output")]
+    result: Option<PathBuf>,
     /// Vessels of models and tables
     #[arg(long, value_enum, default_value_t = VesselsArg::Edges, help_heading = "Output")]
     vessels: VesselsArg,
@@ -95,12 +103,29 @@ enum Kind {
     Table,
 }
 
+/// Figures of a run.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Found {
+    Flow(FlowSummary),
+    Result(ResultSummary),
+}
+
+impl Found {
+    fn text(&self, ended: &Ended) -> String {
+        match self {
+            Self::Flow(summary) => summary.text(ended),
+            Self::Result(summary) => summary.text(ended),
+        }
+    }
+}
+
 /// Output of `--json`.
 #[derive(Serialize)]
 struct Output<'a> {
     program: &'static str,
     #[serde(flatten)]
-    summary: &'a FlowSummary,
+    found: &'a Found,
 }
 
 /// Solves for the flow through a network and writes it, or a model of it.
@@ -110,12 +135,15 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let prepared = pool.install(|| args.prepared(&bars))?;
-    let summary = pool.install(|| args.write(kind, &prepared, &stop))?;
+    let found = pool.install(|| match &args.result {
+        Some(result) => args.write_result(kind, &prepared, result, &stop).map(Found::Result),
+        None => args.write(kind, &prepared, &stop).map(Found::Flow),
+    })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        print(true, &Output { program, summary: &summary }, String::new)?;
+        print(true, &Output { program, found: &found }, String::new)?;
     } else if !args.common.quiet {
-        log::result(&summary.text(&ended(&[&args.output])));
+        log::result(&found.text(&ended(&[&args.output])));
     }
     Ok(Exit::Fine)
 }
@@ -127,6 +155,9 @@ impl Args {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         let checked = |kind, check: Result<(), String>| check.map(|()| kind).map_err(Failure::input);
         match extension.as_str() {
+            "json" | "in" if self.result.is_some() => {
+                Err(Failure::usage("--result is written as a network or a table: name a .vtp or .csv file"))
+            }
             "json" | "in" => checked(Kind::Model, ensure_reduced_writable(path).map_err(|e| e.to_string())),
             "vtp" => checked(Kind::Network, ensure_network_writable(path).map_err(|e| e.to_string())),
             "csv" => ensure_text_writable(path).map(|()| Kind::Table).map_err(|e| Failure::unwritable(path, &e)),
@@ -196,6 +227,32 @@ impl Args {
         })
     }
 
+    /// Writes a result along the vessels.
+    fn write_result(
+        &self,
+        kind: Kind,
+        prepared: &PreparedRun,
+        path: &Path,
+        stop: &Stop,
+    ) -> Result<ResultSummary, Failure> {
+        let network: &Skeleton = &prepared.networks.network;
+        let result = read_result(path).map_err(|e| Failure::input(e.to_string()))?;
+        let Fluid { density, viscosity, .. } = self.flow.fluid();
+        let inlets: BTreeSet<NodeId> = self.supply(prepared).rates.into_keys().collect();
+        let along = Along::of(network, &inlets, &result, ResultFluid { density, viscosity });
+        let along = along.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+        stop.keep();
+        if kind == Kind::Network {
+            let written = write_network(&self.output, network, &result_arrays(&along));
+            written.map_err(|e| Failure::input(e.to_string()))?;
+        } else {
+            let failed = |why: &dyn std::fmt::Display| Failure::unwritable(&self.output, why);
+            let text = result_table(&along, network, &prepared.networks.names).map_err(|e| failed(&e))?;
+            write_text(&self.output, &text).map_err(|e| failed(&e))?;
+        }
+        Ok(ResultSummary::of(&along, &result.name, result.cells.len()))
+    }
+
     fn write_table(&self, rows: &[crate::reduced::VesselRow], names: &NodeNames) -> Result<(), Failure> {
         let failed = |why: &dyn std::fmt::Display| Failure::unwritable(&self.output, why);
         let text = table(rows, names).map_err(|e| failed(&e))?;
@@ -206,7 +263,7 @@ impl Args {
     fn supply(&self, prepared: &PreparedRun) -> Supply {
         let network = &prepared.networks.network;
         let fluid = self.flow.fluid();
-        let inlets: std::collections::BTreeSet<u32> = prepared.inlets.list.iter().map(|inlet| inlet.original).collect();
+        let inlets: BTreeSet<u32> = prepared.inlets.list.iter().map(|inlet| inlet.original).collect();
         let adjacency = network.adjacency();
         let terminals = adjacency.terminals().into_iter();
         let rates = terminals.filter(|&node| inlets.contains(&network.node(node).original)).map(|node| {
