@@ -73,10 +73,11 @@ pub mod meshing {
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;
     pub use crate::pipeline::{
-        BlockCounts, CapRow, Caps, Datum, Difference, Estimate, FailedBlock, FilledLoops, Fluid, Forecast, FusedBlock,
-        Inlet, InletReason, Inlets, JointStyle, LeftWhole, Manifest, Meeting, MeshPlan, MeshSize, Meshed, NoShard,
-        NoTerminal, NotATerminal, Outlets, PlanError, Retry, Role, RunError, RunReport, Shard, ShareReport, StageTime,
-        Store, StoreError, Stored, ThinBlock, TooLarge, VesselData, Whole, make_share, mesh_into, mesh_network,
+        BlockCounts, CapRow, Caps, CapsError, Datum, Difference, Estimate, FailedBlock, FilledLoops, FlowError,
+        FlowPlan, Forecast, FusedBlock, Inflow, Inlet, InletReason, Inlets, JointStyle, LeftWhole, Manifest, Meeting,
+        MeshPlan, MeshSize, Meshed, NoShard, NoTerminal, NotATerminal, OutletKind, OutletPlan, OutletSplit, Outlets,
+        PlanError, Reference, Retry, Role, RunError, RunReport, Shard, ShareReport, StageTime, Store, StoreError,
+        Stored, ThinBlock, TooLarge, VesselData, Whole, make_share, mesh_into, mesh_network,
     };
 }
 

@@ -1,6 +1,6 @@
 //! Command-line options that remedy errors and notes of the library.
 
-use crate::pipeline::{RunError, StoreError, TooLarge};
+use crate::pipeline::{FlowError, RunError, StoreError, TooLarge};
 use anastomesh_io::faults::FileError;
 use anastomesh_io::network::{NetworkFileError, NetworkFormat, NetworkNote};
 use anastomesh_io::surface::SurfaceFormat;
@@ -44,6 +44,19 @@ pub fn of_store(error: &StoreError) -> String {
         StoreError::Other { .. } => ", or give --restart to delete its blocks",
         StoreError::Write { .. } => " (--work-dir)",
         StoreError::Read(_) => ", or start again with --restart",
+        _ => "",
+    };
+    format!("{error}{hint}")
+}
+
+/// Error of a flow plan, with the options that help.
+pub fn of_flow(error: &FlowError) -> String {
+    let hint = match error {
+        FlowError::NoReference { .. } => " (--total-resistance, --mean-pressure)",
+        FlowError::TooFast { .. } => " (--inflow, --viscosity, --density, --units)",
+        FlowError::UnknownInlet { .. } | FlowError::Columns { .. } | FlowError::NotInwards { .. } => " (--inflow)",
+        FlowError::PressureTooLow { .. } => " (--mean-pressure)",
+        FlowError::OutletTooThin { .. } => " (--tree-minimum-radius)",
         _ => "",
     };
     format!("{error}{hint}")

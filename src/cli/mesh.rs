@@ -23,7 +23,7 @@ use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Fidelity};
-use crate::pipeline::{Caps, Clock, Datum, Estimate, JointStyle, MeshPlan, RunReport, Shard, VesselData};
+use crate::pipeline::{Caps, Clock, Datum, Estimate, FlowPlan, JointStyle, MeshPlan, RunReport, Shard, VesselData};
 use crate::report::caps;
 use crate::report::fidelity::displaced;
 use crate::report::page::{self, Mark, Section};
@@ -154,6 +154,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if plan.smooths_joints() && args.work.dir.is_some() {
         return Err(Failure::usage("--work-dir cannot store smoothed joints: give --joint disc or --frozen-joints"));
     }
+    let flow = args.flow.plan()?;
     let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
     if !args.data.is_empty() && !format.holds_values() {
@@ -166,7 +167,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let pool = thread_pool(args.common.threads)?;
-    let prepared = pool.install(|| args.prepared(plan))?;
+    let prepared = pool.install(|| args.prepared(plan, flow))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
@@ -225,12 +226,12 @@ impl Args {
     }
 
     /// Reads and prepares the network.
-    fn prepared(&self, mut plan: MeshPlan) -> Result<PreparedRun, Failure> {
+    fn prepared(&self, mut plan: MeshPlan, flow: FlowPlan) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
         let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
         let [inlets, outlets] = self.flow.extension();
         let mut run = Run::new(file).plan(plan).prepare(cures).roots(&self.root).extend(inlets, outlets);
-        run = run.fluid(self.flow.fluid());
+        run = run.flow(flow);
         if let Some(iterations) = self.blocks.refine {
             run = run.refine(self.how.params(iterations));
         }

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::flow::FlowArgs;
+use super::hint;
 use super::log;
 use super::network::NetworkArgs;
 use super::prepare::CureArgs;
@@ -16,7 +17,7 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::pipeline::Fluid;
+use crate::pipeline::{FlowError, FlowPlan, FlowSolution, InletSite};
 use crate::reduced::{Along, ModelOptions, ResultFluid, Supply, VesselFlow, reduced_model};
 use crate::report::flow::{FlowSummary, ResultSummary, arrays, result_arrays, result_table, table};
 use crate::report::rows::Ended;
@@ -27,7 +28,7 @@ use anastomesh_io::network::{
 use anastomesh_io::results::read_result;
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::progress::Progress;
-use anastomesh_network::flow::solve;
+use anastomesh_network::flow::NetworkFlow;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
 #[derive(Debug, clap::Args)]
@@ -131,13 +132,14 @@ struct Output<'a> {
 /// Solves for the flow through a network and writes it, or a model of it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let kind = args.kind()?;
+    let plan = args.flow.plan()?;
     let pool = thread_pool(args.common.threads)?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    let prepared = pool.install(|| args.prepared(&bars))?;
+    let prepared = pool.install(|| args.prepared(&plan, &bars))?;
     let found = pool.install(|| match &args.result {
-        Some(result) => args.write_result(kind, &prepared, result, &stop).map(Found::Result),
-        None => args.write(kind, &prepared, &stop).map(Found::Flow),
+        Some(result) => args.write_result(kind, &plan, &prepared, result, &stop).map(Found::Result),
+        None => args.write(kind, &plan, &prepared, &stop).map(Found::Flow),
     })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
@@ -169,11 +171,11 @@ impl Args {
     }
 
     /// Reads and prepares the network as `mesh` does.
-    fn prepared(&self, bars: &Bars) -> Result<PreparedRun, Failure> {
+    fn prepared(&self, plan: &FlowPlan, bars: &Bars) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
         let file = self.network.file(cures.radii)?;
         let [inlets, outlets] = self.flow.extension();
-        let mut run = Run::new(file).prepare(cures).roots(&self.root).extend(inlets, outlets).fluid(self.flow.fluid());
+        let mut run = Run::new(file).prepare(cures).roots(&self.root).extend(inlets, outlets).flow(plan.clone());
         if let Some(iterations) = self.refine {
             run = run.refine(self.how.params(iterations));
         }
@@ -190,17 +192,16 @@ impl Args {
         failure(error, &self.network.network, || Failure::stopped(NOTHING_KEPT))
     }
 
-    fn write(&self, kind: Kind, prepared: &PreparedRun, stop: &Stop) -> Result<FlowSummary, Failure> {
+    fn write(&self, kind: Kind, plan: &FlowPlan, prepared: &PreparedRun, stop: &Stop) -> Result<FlowSummary, Failure> {
         let network: &Skeleton = &prepared.networks.network;
-        let supply = self.supply(prepared);
-        let viscosity = self.flow.fluid().viscosity;
-        let solved = solve(network, &supply.rates, viscosity).map_err(|e| Failure::stage(e.to_string()))?;
+        let viscosity = plan.viscosity;
+        let (solved, supply) = self.solved(plan, prepared)?;
         let flow = VesselFlow::of(network, &solved, viscosity);
         let lumped = self.vessels == VesselsArg::Branches;
         stop.keep();
         let vessels = match kind {
             Kind::Model => {
-                let model = reduced_model(network, &solved, &supply, &self.model_options(&supply));
+                let model = reduced_model(network, &solved, &supply, &self.model_options(plan, &supply));
                 let model = model.map_err(|e| Failure::input(format!("{}: {e}", self.network.network.display())))?;
                 write_reduced(&self.output, &model).map_err(|e| Failure::input(e.to_string()))?;
                 model.vessels.len()
@@ -231,15 +232,16 @@ impl Args {
     fn write_result(
         &self,
         kind: Kind,
+        plan: &FlowPlan,
         prepared: &PreparedRun,
         path: &Path,
         stop: &Stop,
     ) -> Result<ResultSummary, Failure> {
         let network: &Skeleton = &prepared.networks.network;
         let result = read_result(path).map_err(|e| Failure::input(e.to_string()))?;
-        let Fluid { density, viscosity, .. } = self.flow.fluid();
-        let inlets: BTreeSet<NodeId> = self.supply(prepared).rates.into_keys().collect();
-        let along = Along::of(network, &inlets, &result, ResultFluid { density, viscosity });
+        let fluid = ResultFluid { density: plan.density, viscosity: plan.viscosity };
+        let inlets: BTreeSet<NodeId> = prepared.inlets.sites(network).iter().map(|inlet| inlet.node).collect();
+        let along = Along::of(network, &inlets, &result, fluid);
         let along = along.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         stop.keep();
         if kind == Kind::Network {
@@ -259,31 +261,27 @@ impl Args {
         write_text(&self.output, &text).map_err(|e| failed(&e))
     }
 
-    /// Conditions at the terminals.
-    fn supply(&self, prepared: &PreparedRun) -> Supply {
+    /// Solves for the flow with the conditions of the options.
+    fn solved(&self, flow: &FlowPlan, prepared: &PreparedRun) -> Result<(NetworkFlow, Supply), Failure> {
         let network = &prepared.networks.network;
-        let fluid = self.flow.fluid();
-        let inlets: BTreeSet<u32> = prepared.inlets.list.iter().map(|inlet| inlet.original).collect();
-        let adjacency = network.adjacency();
-        let terminals = adjacency.terminals().into_iter();
-        let rates = terminals.filter(|&node| inlets.contains(&network.node(node).original)).map(|node| {
-            let edge = network.edge(adjacency.edges(node)[0]);
-            let usual = || {
-                let radius = edge.radii[edge.end(node)];
-                let reynolds = anastomesh_io::flow::USUAL_REYNOLDS;
-                anastomesh_io::flow::flow_of_reynolds(reynolds, radius, fluid.density, fluid.viscosity)
-            };
-            (node, fluid.inflow.unwrap_or_else(usual))
-        });
-        Supply { rates: rates.collect(), ..Supply::default() }
+        let inlets = prepared.inlets.sites(network);
+        let names = &prepared.networks.names;
+        let solved = flow.solve(network, &inlets, &|node| names.of(NodeId(node)));
+        let FlowSolution { flow, outlets, waveforms } = solved.map_err(|e| match e {
+            FlowError::NotConverged(_) => Failure::stage(e.to_string()),
+            e => Failure::input(hint::of_flow(&e)),
+        })?;
+        let rate = |inlet: &InletSite| Some((inlet.node, *flow.of_terminal.get(&inlet.node)?));
+        let rates = inlets.iter().filter_map(rate).collect();
+        Ok((flow, Supply { rates, waveforms, outlets }))
     }
 
-    fn model_options(&self, supply: &Supply) -> ModelOptions {
-        let fluid = self.flow.fluid();
+    fn model_options(&self, flow: &FlowPlan, supply: &Supply) -> ModelOptions {
         let stiffness = self.stiffness.map_or_else(Stiffness::default, |StiffnessArg(stiffness)| stiffness);
-        ModelOptions::new(fluid.density, fluid.viscosity)
+        ModelOptions::new(flow.density, flow.viscosity)
             .stiffness(stiffness)
             .elastic(self.stiffness.is_some() || !supply.waveforms.is_empty())
             .lumped(self.vessels == VesselsArg::Branches)
+            .periods(if supply.waveforms.is_empty() { 0 } else { flow.periods })
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::exit::Failure;
 use super::hint;
 use super::stop::NOTHING_KEPT;
-use crate::pipeline::RunError;
+use crate::pipeline::{FlowError, RunError};
 use crate::run::MeshingError;
 use anastomesh_io::network::NetworkNote;
 use anastomesh_network::PrepareReport;
@@ -25,6 +25,8 @@ pub fn failure(error: MeshingError, network: &Path, stopped: impl FnOnce() -> Fa
     match error {
         MeshingError::Skeleton(e) => Failure::input(format!("{}: {e}; correct the file", network.display())),
         MeshingError::Inlet(e) => Failure::usage(format!("--root: {e}")),
+        MeshingError::Flow(e @ FlowError::NotConverged(_)) => Failure::stage(e.to_string()),
+        MeshingError::Flow(e) => Failure::input(hint::of_flow(&e)),
         MeshingError::Refine(e) => refine_failure(&e),
         MeshingError::Run(RunError::Cancelled) => stopped(),
         MeshingError::Run(e @ (RunError::Root(_) | RunError::Plan(_))) => Failure::usage(e.to_string()),

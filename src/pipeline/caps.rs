@@ -1,27 +1,19 @@
 //! Inlets and outlets: where each cap is, how large, and what flows through it by the one-dimensional solution; and which
 //! outlets are one patch.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use anastomesh_io::flow::{CapFlow, Flow, OutletModel, USUAL_REYNOLDS, flow_of_reynolds};
+use super::flow_plan::{FlowError, FlowPlan, FlowSolution, InletSite};
+use anastomesh_io::flow::{CapFlow, Flow, OutletModel, Waveform};
+use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::relabel::Relabelled;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{Cap, Patch, WALL};
-use anastomesh_network::flow::{NetworkFlow, Orders, solve};
+use anastomesh_network::flow::Orders;
 use anastomesh_skeleton::{NodeId, Skeleton};
-
-/// Fluid properties and flow rate of each inlet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fluid {
-    /// Mass per volume.
-    pub density: f64,
-    /// Dynamic viscosity.
-    pub viscosity: f64,
-    /// Volume per time into each inlet; none for what has the usual Reynolds number there.
-    pub inflow: Option<f64>,
-}
 
 /// Grouping of outlets into patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,14 +43,14 @@ pub struct CapRow {
     pub strahler: u32,
     /// Diameter-defined Strahler order.
     pub order: u32,
-    /// Volume per time, in at an inlet, out at an outlet.
+    /// Mean volume per time, in at an inlet, out at an outlet.
     pub flow: f64,
-    /// Pressure, against none at the outlets.
+    /// Pressure at mean flow.
     pub pressure: f64,
-    /// Pressure per flow beyond an outlet that leaves the flows as they are: all of what is beyond the outlets takes as much
-    /// pressure as the network.
-    pub resistance: f64,
-    is_inlet: bool,
+    /// Model beyond an outlet; `None` at an inlet.
+    pub outlet: Option<OutletModel>,
+    /// Pulsatile flow rate into an inlet.
+    pub waveform: Option<Waveform>,
 }
 
 /// All inlets and outlets of a mesh.
@@ -66,17 +58,34 @@ pub struct CapRow {
 pub struct Caps {
     /// In the order of their patches as the mesh has them.
     pub rows: Vec<CapRow>,
-    fluid: Fluid,
+    plan: FlowPlan,
     /// Outlets that are one patch.
     outlets: Outlets,
 }
 
+/// Reason why the flow of a mesh cannot be computed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CapsError {
+    /// The flow plan does not fit the network.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] io::Error),
+}
+
 impl Caps {
-    /// Of the mesh of a network. Inlets and outlets are known by the names of their patches.
+    /// Inlets and outlets of the mesh of a network, known by the names of their patches. `names` are those of the nodes.
     ///
     /// # Errors
-    /// The mesh cannot be read, or the pressures in the network cannot be found.
-    pub fn of(mesh: &dyn MeshSource, network: &Skeleton, fluid: Fluid) -> io::Result<Self> {
+    /// The mesh cannot be read, or the plan does not fit the network.
+    pub fn of(
+        mesh: &dyn MeshSource,
+        network: &Skeleton,
+        plan: &FlowPlan,
+        names: &NodeNames,
+    ) -> Result<Self, CapsError> {
         let adjacency = network.adjacency();
         let terminals: BTreeMap<u32, NodeId> =
             adjacency.terminals().into_iter().map(|node| (network.node(node).original, node)).collect();
@@ -85,16 +94,20 @@ impl Caps {
             Some((patch, cap, *terminals.get(&cap.node)?))
         });
         let caps: Vec<(&Patch, Cap, NodeId)> = caps.collect();
-        let usual = |cap: &Cap| flow_of_reynolds(USUAL_REYNOLDS, cap.radius, fluid.density, fluid.viscosity);
+        let name = |node: u32| names.of(NodeId(node));
         let inlets = caps.iter().filter(|(patch, ..)| patch.is_inlet());
-        let inlets = inlets.map(|(_, cap, node)| (*node, fluid.inflow.unwrap_or_else(|| usual(cap)))).collect();
-        let solved = solve(network, &inlets, fluid.viscosity).map_err(io::Error::other)?;
-        let orders = Orders::of(network, &solved.pressure);
-        let drops = drops(network, &solved, &inlets);
+        let site = |(patch, cap, node): &(&Patch, Cap, NodeId)| InletSite {
+            node: *node,
+            patch: patch.name.clone(),
+            name: name(cap.node),
+            radius: cap.radius,
+        };
+        let FlowSolution { flow, mut outlets, mut waveforms } =
+            plan.solve(network, &inlets.map(site).collect::<Vec<_>>(), &name)?;
+        let orders = Orders::of(network, &flow.pressure);
         let areas = areas(mesh)?;
         let row = |(patch, cap, node): (&Patch, Cap, NodeId)| {
-            let (edge, is_inlet) = (adjacency.edges(node)[0].index(), patch.is_inlet());
-            let flow = solved.of_terminal.get(&node).copied().unwrap_or(0.0);
+            let edge = adjacency.edges(node)[0].index();
             CapRow {
                 id: patch.id,
                 name: patch.name.clone(),
@@ -102,13 +115,13 @@ impl Caps {
                 area: areas.get(&patch.id).copied().unwrap_or(0.0),
                 strahler: orders.strahler[edge],
                 order: orders.by_diameter[edge],
-                flow,
-                pressure: solved.pressure[node.index()],
-                resistance: if is_inlet || flow <= 0.0 { 0.0 } else { drops[node.index()] / flow },
-                is_inlet,
+                flow: flow.of_terminal.get(&node).copied().unwrap_or(0.0),
+                pressure: flow.pressure[node.index()],
+                outlet: outlets.remove(&node),
+                waveform: waveforms.remove(&node),
             }
         };
-        Ok(Self { rows: caps.into_iter().map(row).collect(), fluid, outlets: Outlets::Separate })
+        Ok(Self { rows: caps.into_iter().map(row).collect(), plan: plan.clone(), outlets: Outlets::Separate })
     }
 
     /// Makes outlets one patch. What the mesh is then; none where it stays as it is.
@@ -124,11 +137,11 @@ impl Caps {
         let left = mesh.patches().iter().filter(|patch| patch.cap.is_none() || patch.is_inlet());
         let mut patches: Vec<Patch> = left.cloned().collect();
         let first = patches.iter().map(|patch| patch.id).max().unwrap_or(WALL) + 1;
-        let groups: BTreeSet<u32> = self.rows.iter().filter(|row| !row.is_inlet).map(of_row).collect();
+        let groups: BTreeSet<u32> = self.rows.iter().filter(|row| row.outlet.is_some()).map(of_row).collect();
         let groups: BTreeMap<u32, i32> = groups.into_iter().zip(first..).collect();
         patches.extend(groups.iter().map(|(&group, &id)| Patch { id, name: name(group), cap: None }));
         let mut ids = BTreeMap::new();
-        for row in self.rows.iter_mut().filter(|row| !row.is_inlet) {
+        for row in self.rows.iter_mut().filter(|row| row.outlet.is_some()) {
             let group = of_row(row);
             ids.insert(row.id, groups[&group]);
             (row.id, row.name) = (groups[&group], name(group));
@@ -143,38 +156,28 @@ impl Caps {
 
     /// The nodes of inlets, whose caps are patches of their own in any case.
     pub fn alone(&self) -> Vec<u32> {
-        self.rows.iter().filter(|row| row.is_inlet).map(|row| row.cap.node).collect()
+        self.rows.iter().filter(|row| row.outlet.is_none()).map(|row| row.cap.node).collect()
     }
 
     /// Boundary conditions for a solver; outlets of one patch are combined.
     pub fn flow(&self) -> Flow {
         let mut caps: BTreeMap<i32, CapFlow> = BTreeMap::new();
         for row in &self.rows {
-            let outlet = OutletModel::Resistance { resistance: row.resistance, distal_pressure: 0.0 };
-            let cap = caps.entry(row.id).or_insert_with(|| CapFlow::default().outlet(outlet));
-            if cap.flow != 0.0 {
-                cap.outlet = cap.outlet.parallel(&outlet).unwrap_or(outlet);
-            }
-            cap.flow += row.flow;
+            let outlet = row.outlet.unwrap_or_default();
+            let new = || CapFlow::default().outlet(outlet).waveform(row.waveform.clone());
+            match caps.entry(row.id) {
+                Entry::Vacant(entry) => entry.insert(new().flow(row.flow)),
+                Entry::Occupied(entry) => {
+                    let cap = entry.into_mut();
+                    cap.outlet = cap.outlet.parallel(&outlet).unwrap_or(outlet);
+                    cap.flow += row.flow;
+                    cap
+                }
+            };
         }
-        Flow::new(self.fluid.density, self.fluid.viscosity).caps(caps)
+        let FlowPlan { density, viscosity, profile, .. } = self.plan;
+        Flow::new(density, viscosity).caps(caps).profile(profile).transient(self.plan.transient())
     }
-}
-
-/// By node, the pressure that its component takes: the mean at its inlets by their flow.
-fn drops(network: &Skeleton, solved: &NetworkFlow, inlets: &BTreeMap<NodeId, f64>) -> Vec<f64> {
-    let components = network.components(&network.adjacency());
-    let mut sums = vec![[0.0; 2]; components.list.len()];
-    for (node, flow) in inlets {
-        let [power, all] = &mut sums[components.of_node[node.index()] as usize];
-        *power += flow * solved.pressure[node.index()];
-        *all += flow;
-    }
-    let drop = |&component: &u32| match sums[component as usize] {
-        [power, all] if all > 0.0 => power / all,
-        _ => 0.0,
-    };
-    components.of_node.iter().map(drop).collect()
 }
 
 /// The area of each patch but the wall.

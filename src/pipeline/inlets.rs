@@ -1,9 +1,11 @@
 //! Inlets of a network: the terminals that are named, and in each component without one the terminal of largest radius.
 
+use super::flow_plan::InletSite;
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Reason why a terminal is an inlet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -127,6 +129,17 @@ impl Inlets {
         };
         let list = skeleton.node_ids().filter(|&n| adjacency.valence(n) == 1).filter_map(inlet).collect();
         Ok(Self { list, roots: chosen.into_iter().map(original).collect(), inner })
+    }
+
+    /// Inlets of a network with the nodes of the file, with the names of their patches.
+    pub(crate) fn sites(&self, network: &Skeleton) -> Vec<InletSite> {
+        let nodes: BTreeMap<u32, NodeId> = network.node_ids().map(|id| (network.node(id).original, id)).collect();
+        let site = |(k, inlet): (usize, &Inlet)| {
+            let patch = if k == 0 { "inlet".to_owned() } else { format!("inlet_{k}") };
+            let node = *nodes.get(&inlet.original)?;
+            Some(InletSite { node, patch, name: inlet.node.clone(), radius: inlet.radius })
+        };
+        self.list.iter().enumerate().filter_map(site).collect()
     }
 }
 

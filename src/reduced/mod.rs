@@ -4,6 +4,6 @@ mod along;
 mod build;
 mod vessels;
 
-pub use along::{Along, BranchFlow, Misfit, ResultFluid};
+pub use along::{Along, BranchFlow, ResultFluid};
 pub use build::{ModelOptions, Supply, reduced_model};
 pub use vessels::{VesselFlow, VesselRow};

@@ -4,8 +4,7 @@ use super::error::MeshingError;
 use super::networks::Networks;
 use super::prepared::{PreparedRun, Settings};
 use super::result::NetworkMesh;
-use crate::pipeline::{Estimate, Fluid, Inlets, MeshPlan, Store, TooLarge, Whole};
-use anastomesh_io::flow::{BLOOD_DENSITY, BLOOD_VISCOSITY};
+use crate::pipeline::{Estimate, FlowPlan, Inlets, MeshPlan, Store, TooLarge, Whole};
 use anastomesh_io::network::NetworkFile;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::progress::Progress;
@@ -36,7 +35,7 @@ pub struct Run {
     roots: Vec<String>,
     /// Lengths by which inlets and outlets are extended, in their radii.
     extension: [f64; 2],
-    fluid: Fluid,
+    flow: FlowPlan,
     max_displacement: Option<f64>,
 }
 
@@ -50,7 +49,7 @@ impl Run {
             refine: None,
             roots: Vec::new(),
             extension: [0.0; 2],
-            fluid: Fluid { density: BLOOD_DENSITY, viscosity: BLOOD_VISCOSITY, inflow: None },
+            flow: FlowPlan::default(),
             max_displacement: None,
         }
     }
@@ -96,10 +95,10 @@ impl Run {
         self
     }
 
-    /// Sets the fluid of the one-dimensional flow (default: blood in SI units, with the usual Reynolds number at inlets).
+    /// Sets the flow (default: blood in SI units at Reynolds number 1, with pressure 0 at outlets).
     #[must_use]
-    pub fn fluid(mut self, fluid: Fluid) -> Self {
-        self.fluid = fluid;
+    pub fn flow(mut self, flow: FlowPlan) -> Self {
+        self.flow = flow;
         self
     }
 
@@ -114,10 +113,11 @@ impl Run {
     /// Applies the cures and chooses the inlets.
     ///
     /// # Errors
-    /// If the plan is out of range, the network cannot be used, or a named inlet is not a terminal.
+    /// If a plan is out of range, the network cannot be used, or a named inlet is not a terminal.
     pub fn prepared(self) -> Result<PreparedRun, MeshingError> {
-        let Self { file, mut plan, prepare: params, refine, mut roots, extension, fluid, max_displacement } = self;
+        let Self { file, mut plan, prepare: params, refine, mut roots, extension, flow, max_displacement } = self;
         plan.validate()?;
+        flow.check()?;
         let NetworkFile { skeleton: raw, groups, notes, names, roots: roots_of_file, .. } = file;
         let Prepared { skeleton, given, outline, report } = prepare(&raw, &groups, &params)?;
         drop(raw);
@@ -128,7 +128,8 @@ impl Run {
         let ([given, outline, skeleton], cut_short) = extended([given, outline, skeleton], &inlets, extension);
         let networks = Networks::new(given, outline, skeleton, names, report);
         let retracts = params.touching != Touching::Keep;
-        let settings = Settings { refine, retracts, fluid, max_displacement };
+        flow.check_with(&networks.prepared, &inlets.sites(&networks.prepared), &networks.names)?;
+        let settings = Settings { refine, retracts, flow, max_displacement };
         Ok(PreparedRun { networks, notes, inlets, cut_short, plan, origin: Vec::new(), settings })
     }
 

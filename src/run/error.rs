@@ -1,7 +1,7 @@
 //! Errors of a run.
 
 use super::networks::Networks;
-use crate::pipeline::{NoTerminal, PlanError, RunError, RunReport, StoreError};
+use crate::pipeline::{CapsError, FlowError, NoTerminal, PlanError, RunError, RunReport, StoreError};
 use anastomesh_mesh::units::counted;
 use anastomesh_network::RefineError;
 use anastomesh_skeleton::SkeletonError;
@@ -17,6 +17,9 @@ pub enum MeshingError {
     /// A named inlet is not a terminal.
     #[error(transparent)]
     Inlet(#[from] NoTerminal),
+    /// The flow plan does not fit the network.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
     /// The network cannot be refined.
     #[error(transparent)]
     Refine(#[from] RefineError),
@@ -36,6 +39,15 @@ pub enum MeshingError {
 impl From<PlanError> for MeshingError {
     fn from(error: PlanError) -> Self {
         RunError::from(error).into()
+    }
+}
+
+impl From<CapsError> for MeshingError {
+    fn from(error: CapsError) -> Self {
+        match error {
+            CapsError::Flow(error) => error.into(),
+            CapsError::Mesh(error) => error.into(),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::networks::Networks;
 use super::result::NetworkMesh;
 use super::strategy::{self, Attempt, Candidate, Meshing, Strategy};
 use crate::pipeline::{
-    Clock, Estimate, Fluid, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
+    Clock, Estimate, FlowPlan, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
     Store, Stored, TooLarge, Whole, fingerprint, make_share, mesh_in_memory,
 };
 use anastomesh_io::network::NetworkNote;
@@ -24,7 +24,7 @@ pub(super) struct Settings {
     pub refine: Option<RefineParams>,
     /// True if terminals that could not be capped are retracted.
     pub retracts: bool,
-    pub fluid: Fluid,
+    pub flow: FlowPlan,
     pub max_displacement: Option<f64>,
 }
 
@@ -147,7 +147,7 @@ impl PreparedRun {
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.fluid, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.flow, settings.max_displacement, progress)
     }
 
     /// Meshes in memory. Woven joints are smoothed, if the plan asks for it; that is one attempt, without fallbacks.
@@ -190,6 +190,6 @@ impl PreparedRun {
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.fluid, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.flow, settings.max_displacement, progress)
     }
 }

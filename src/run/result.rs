@@ -4,7 +4,7 @@ use super::error::MeshingError;
 use super::networks::Networks;
 use super::strategy::Attempt;
 use crate::fidelity::{Displaced, Fidelity};
-use crate::pipeline::{Caps, Clock, Fluid, MeshPlan, RunReport};
+use crate::pipeline::{Caps, Clock, FlowPlan, MeshPlan, RunReport};
 use anastomesh_io::volume::MeshNotes;
 use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -92,7 +92,7 @@ impl<M: MeshSource> NetworkMesh<M> {
     pub(super) fn evaluated(
         mut self,
         plan: &MeshPlan,
-        fluid: &Fluid,
+        flow: &FlowPlan,
         max_displacement: Option<f64>,
         progress: &dyn Progress,
     ) -> Result<Self, MeshingError> {
@@ -101,7 +101,7 @@ impl<M: MeshSource> NetworkMesh<M> {
             let networks = self.networks.compared(&self.network);
             let compare = || Fidelity::of(networks, &self.mesh, self.check.counts.volume);
             self.fidelity = Some(clock.time(progress, Stage::Check, 0, compare)?);
-            self.caps = Some(Caps::of(&self.mesh, &self.network, *fluid)?);
+            self.caps = Some(Caps::of(&self.mesh, &self.network, flow, &self.networks.names)?);
             self.report.stages.extend(clock.stages());
         }
         self.defects = self.find_defects(plan, max_displacement);

@@ -1,9 +1,18 @@
 use super::*;
-use crate::pipeline::{MeshPlan, Meshed, mesh_network};
+use crate::pipeline::{Inflow, MeshPlan, Meshed, OutletKind, OutletPlan, Reference, mesh_network};
+use anastomesh_io::flow::USUAL_REYNOLDS;
 use anastomesh_mesh::source::gather;
 use anastomesh_skeleton::fixtures::network;
 
-const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 4e-3, inflow: Some(2.0) };
+/// Plan with a total resistance of 3.
+fn plan() -> FlowPlan {
+    let outlets = OutletPlan::default().kind(OutletKind::Resistance).reference(Some(Reference::TotalResistance(3.0)));
+    FlowPlan::default().density(1000.0).viscosity(4.0).inflow(Inflow::Rate(2.0)).outlets(outlets)
+}
+
+fn caps_of(made: &Meshed, skeleton: &Skeleton, plan: &FlowPlan) -> Caps {
+    Caps::of(&made.mesh, skeleton, plan, &NodeNames::default()).unwrap()
+}
 
 /// A trunk with five thin side vessels and a wide end, beside a straight vessel.
 fn meshed() -> (Skeleton, Meshed) {
@@ -24,24 +33,27 @@ fn meshed() -> (Skeleton, Meshed) {
 #[test]
 fn each_cap_has_its_area_and_the_flow_of_its_vessel() {
     let (skeleton, made) = meshed();
-    let caps = Caps::of(&made.mesh, &skeleton, FLUID).unwrap();
+    let caps = caps_of(&made, &skeleton, &plan());
     let names: Vec<_> = caps.rows.iter().map(|row| (row.id, row.name.as_str(), row.cap.node)).collect();
     assert_eq!(names[..4], [(2, "inlet", 0), (3, "inlet_1", 12), (4, "outlet_0", 6), (5, "outlet_1", 7)]);
     assert_eq!((names.len(), names[8]), (9, (10, "outlet_6", 13)));
     for row in &caps.rows {
         let disc = std::f64::consts::PI * row.cap.radius * row.cap.radius;
         assert!((row.area / disc - 1.0).abs() < 0.05, "{row:?}");
-        // Given its resistance, an outlet has the pressure that its inlet has without any.
-        let inlet = usize::from(row.cap.node > 11);
-        assert!(row.is_inlet || (row.resistance * row.flow / caps.rows[inlet].pressure - 1.0).abs() < 1e-12);
+        // All outlets have the pressure of the total flow rate through the total resistance.
+        assert_eq!(row.outlet.is_none(), row.name.starts_with("inlet"));
+        if let Some(outlet) = row.outlet {
+            assert!((outlet.resistance() * row.flow / 12.0 - 1.0).abs() < 1e-12, "{row:?}");
+            assert!((row.pressure / 12.0 - 1.0).abs() < 1e-12, "{row:?}");
+        }
     }
     let flows: Vec<f64> = caps.rows.iter().map(|row| row.flow).collect();
     assert_eq!(flows[..2], [2.0; 2]);
     assert!((flows[8] - 2.0).abs() < 1e-14 && (flows[2..8].iter().sum::<f64>() - 2.0).abs() < 1e-12, "{flows:?}");
-    let usual = Caps::of(&made.mesh, &skeleton, Fluid { inflow: None, ..FLUID }).unwrap();
+    let usual = caps_of(&made, &skeleton, &plan().inflow(Inflow::Usual));
     let inlet = &usual.rows[0];
     let speed = inlet.flow / (std::f64::consts::PI * inlet.cap.radius.powi(2));
-    assert!((1000.0 * speed * 2.0 * inlet.cap.radius / 4e-3 - USUAL_REYNOLDS).abs() < 1e-12);
+    assert!((1000.0 * speed * 2.0 * inlet.cap.radius / 4.0 - USUAL_REYNOLDS).abs() < 1e-12);
 }
 
 #[test]
@@ -49,7 +61,7 @@ fn outlets_become_one_patch_or_one_of_each_order() {
     let (skeleton, made) = meshed();
     let count = |id| made.mesh.boundary_patch.iter().filter(|&&patch| patch == id).count();
     let outlets: usize = (4..=10).map(count).sum();
-    let mut caps = Caps::of(&made.mesh, &skeleton, FLUID).unwrap();
+    let mut caps = caps_of(&made, &skeleton, &plan());
     assert!(caps.group(&made.mesh, Outlets::Separate).is_none());
     let grouped = gather(&caps.group(&made.mesh, Outlets::Grouped).unwrap()).unwrap();
     let names: Vec<_> = grouped.patches.iter().map(|patch| (patch.id, patch.name.as_str())).collect();
@@ -59,10 +71,10 @@ fn outlets_become_one_patch_or_one_of_each_order() {
     assert_eq!(caps.alone(), [0, 12]);
     let flow = caps.flow();
     assert!((flow.caps[&4].flow - 4.0).abs() < 1e-12);
-    let conductance: f64 = caps.rows[2..].iter().map(|row| 1.0 / row.resistance).sum();
+    let conductance: f64 = caps.rows[2..].iter().map(|row| 1.0 / row.outlet.unwrap().resistance()).sum();
     assert!((flow.caps[&4].outlet.resistance() * conductance - 1.0).abs() < 1e-12);
 
-    let mut caps = Caps::of(&made.mesh, &skeleton, FLUID).unwrap();
+    let mut caps = caps_of(&made, &skeleton, &plan());
     let (wide, thin) = (caps.rows[2].order, caps.rows[3].order);
     assert!(thin < wide && caps.rows[2].strahler == 1, "{thin} {wide}");
     let by_order = gather(&caps.group(&made.mesh, Outlets::ByOrder).unwrap()).unwrap();

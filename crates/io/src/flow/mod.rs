@@ -12,11 +12,15 @@
 
 mod conditions;
 mod outlet;
+mod structured_tree;
+mod table;
 mod transient;
 mod waveform;
 
 pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub(crate) use conditions::{Role, plain};
 pub use outlet::OutletModel;
+pub use structured_tree::StructuredTree;
+pub use table::{FlowTable, FlowTableError, FlowTableFault};
 pub use transient::{Profile, Transient};
 pub use waveform::{Waveform, WaveformFault};

@@ -9,4 +9,4 @@ mod poiseuille;
 pub use between::solve_between;
 pub use conjugate_gradient::NotConverged;
 pub use orders::Orders;
-pub use poiseuille::{NetworkFlow, resistance, solve};
+pub use poiseuille::{NetworkFlow, resistance, solve, solve_with_resistances};

@@ -24,13 +24,27 @@ const SHORTEST: f64 = 1e-9;
 /// # Errors
 /// [`NotConverged`] with the residual, for networks with many loops.
 pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64) -> Result<NetworkFlow, NotConverged> {
+    solve_with_resistances(skeleton, inlets, &BTreeMap::new(), viscosity)
+}
+
+/// Solves for the node pressures with a resistance above 0 beyond some outlets, and pressure 0 behind it. `inlets` are as
+/// in [`solve`]; outlets that are not in `resistances` are at pressure 0.
+///
+/// # Errors
+/// [`NotConverged`] with the residual, for networks with many loops.
+pub fn solve_with_resistances(
+    skeleton: &Skeleton,
+    inlets: &BTreeMap<NodeId, f64>,
+    resistances: &BTreeMap<NodeId, f64>,
+    viscosity: f64,
+) -> Result<NetworkFlow, NotConverged> {
     let adjacency = skeleton.adjacency();
     let components = skeleton.components(&adjacency);
     let terminals = adjacency.terminals();
     let mut is_outlet = vec![false; skeleton.nodes.len()];
     let mut has_outlet = vec![false; components.list.len()];
     for node in terminals.iter().filter(|node| !inlets.contains_key(node)) {
-        is_outlet[node.index()] = true;
+        is_outlet[node.index()] = !resistances.contains_key(node);
         has_outlet[components.of_node[node.index()] as usize] = true;
     }
     let mut network = Conductors::new(skeleton.nodes.len());
@@ -43,6 +57,9 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
             [true, true] => {}
         }
     }
+    for (&node, &resistance) in resistances {
+        network.join_ground(node.0, 1.0 / resistance);
+    }
     let let_in = |node: NodeId, flow: f64| {
         if has_outlet[components.of_node[node.index()] as usize] { flow } else { 0.0 }
     };
@@ -53,6 +70,9 @@ pub fn solve(skeleton: &Skeleton, inlets: &BTreeMap<NodeId, f64>, viscosity: f64
     let through = |node: NodeId| {
         if let Some(&flow) = inlets.get(&node) {
             return let_in(node, flow);
+        }
+        if let Some(&resistance) = resistances.get(&node) {
+            return pressure[node.index()] / resistance;
         }
         let edge = adjacency.edges(node)[0];
         conductance(skeleton, edge, viscosity) * pressure[skeleton.edge(edge).other(node).index()]
@@ -108,6 +128,20 @@ mod tests {
         halves.edges[0].radii = [2.0, 1.5];
         halves.edges[1].radii = [1.5, 1.0];
         assert!((solved(&halves, &[(0, 1.0)]).pressure[0] / whole - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn resistances_beyond_outlets_divide_the_flow() {
+        let points = [[0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [-1.0, 0.0, 2.0]];
+        let fork = network(&points, 0.2, &[(0, 1), (1, 2), (1, 3)]);
+        let side = 8.0 * 2.0 * 2.0_f64.sqrt() / (PI * 0.2_f64.powi(4));
+        let [inlets, resistances] = [[(NodeId(0), 3.0)], [(NodeId(2), side)]].map(BTreeMap::from);
+        let flow = solve_with_resistances(&fork, &inlets, &resistances, 2.0).unwrap();
+        // One side has twice the resistance of the other.
+        assert!((flow.of_terminal[&NodeId(2)] - 1.0).abs() < 1e-14, "{flow:?}");
+        assert!((flow.of_terminal[&NodeId(3)] - 2.0).abs() < 1e-14);
+        assert!((flow.pressure[2] / side - 1.0).abs() < 1e-14);
+        assert_eq!(flow.pressure[3], 0.0);
     }
 
     #[test]
