@@ -42,6 +42,7 @@ mod partition;
 #[cfg(feature = "cli")]
 mod picture;
 mod pipeline;
+#[cfg(feature = "cli")]
 mod reduced;
 #[cfg(feature = "cli")]
 mod report;

@@ -90,7 +90,7 @@ enum Verb {
     Generate(generate::Args),
     /// Mesh a surface, a facet complex or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
-    /// Solve for the one-dimensional flow through a network; write it, or a model for 0D and 1D solvers
+    /// Solve for the one-dimensional flow through a network; write models for 0D and 1D solvers, or results along vessels
     Flow(Box<network_flow::Args>),
     /// Convert a volume mesh, a surface or a network to another format, or a mesh to its boundary
     Convert(convert::Args),

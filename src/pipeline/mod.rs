@@ -38,6 +38,7 @@ pub use data::{Datum, VesselData};
 pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 pub use flow_plan::{FlowError, FlowPlan, Inflow};
+#[cfg(feature = "cli")]
 pub(crate) use flow_plan::{FlowSolution, InletSite};
 pub use forecast::Forecast;
 pub use inlets::{Inlet, InletReason, Inlets, NoTerminal};

@@ -22,6 +22,10 @@ const MIDDLE: [f64; 2] = [0.3, 0.7];
 const INSIDE: f64 = 1.5;
 /// Part of the cells that may be outside: cells in the webs of wide bifurcations.
 const OUTSIDE: f64 = 0.02;
+/// Length of a branch that must have cells, in radii. Shorter ones may lie within their neighbours.
+const LONG: f64 = 4.0;
+/// Largest distance of a cap from its terminal, in radii.
+const AT_TERMINAL: f64 = 3.0;
 /// Largest distance of a wall cell from the wall for the correction of shear, in radii.
 const NEAR_WALL: f64 = 0.5;
 
@@ -102,8 +106,8 @@ pub enum Misfit {
     },
     /// A cap is not at a terminal.
     #[error(
-        "the boundary has an open face at {place:?}, and its vessel has no terminal; give the network of this mesh, and a \
-         result whose wall is a patch of type wall"
+        "the boundary has an open face at {place:?}, far from every terminal; give the network of this mesh, and a result \
+         whose wall is a patch of type wall"
     )]
     Open {
         /// Centre of the face.
@@ -162,7 +166,8 @@ impl Along {
         for spot in &spots {
             along.branches[spot.branch as usize].cells += 1;
         }
-        if let Some(branch) = along.branches.iter().find(|branch| branch.cells == 0) {
+        let is_missing = |branch: &&BranchFlow| branch.cells == 0 && branch.length > LONG * branch.radius;
+        if let Some(branch) = along.branches.iter().find(is_missing) {
             return Err(Misfit::Empty { nodes: branch.nodes.map(|node| network.nodes[node as usize].original) });
         }
         along.add_flow(&spots, result);
@@ -271,18 +276,23 @@ impl Along {
         scale: f64,
     ) -> Result<BTreeMap<NodeId, f64>, Misfit> {
         let adjacency = network.adjacency();
+        let terminals = adjacency.terminals();
         let mut sums: BTreeMap<NodeId, [f64; 3]> = BTreeMap::new();
         for face in result.outer.iter().filter(|face| !face.is_wall) {
-            let ends = self.branches[spots[face.cell as usize].branch as usize].nodes.map(NodeId);
+            let spot = spots[face.cell as usize];
+            let ends = self.branches[spot.branch as usize].nodes.map(NodeId);
             let distance = |node: &NodeId| (network.node(*node).position - face.center).norm();
-            let near = ends.into_iter().filter(|&node| adjacency.valence(node) == 1);
-            let near = near.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let nearest = |nodes: &[NodeId]| nodes.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let own: Vec<NodeId> = ends.into_iter().filter(|&node| adjacency.valence(node) == 1).collect();
+            // Cells of a very short vessel may belong to its neighbour.
+            let near = nearest(&own).or_else(|| nearest(&terminals));
+            let near = near.filter(|node| distance(node) <= AT_TERMINAL * spot.radius);
             let node = near.ok_or(Misfit::Open { place: face.center.into() })?;
             let (area, sum) = (face.area.norm(), sums.entry(node).or_default());
             *sum = [sum[0] + face.flux, sum[1] + area * scale * face.pressure, sum[2] + area];
         }
         let mut pressures = BTreeMap::new();
-        for node in adjacency.terminals() {
+        for node in terminals {
             let number = network.node(node).original;
             let [flux, pressure, area] = sums.get(&node).copied().ok_or(Misfit::NoCap { node: number })?;
             let is_inlet = inlets.contains(&node);
