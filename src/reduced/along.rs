@@ -5,7 +5,7 @@
 
 use super::vessels::poiseuille_shear;
 use crate::fidelity::Tubes;
-use anastomesh_io::results::FlowResult;
+use anastomesh_io::results::{FlowResult, Near};
 use anastomesh_mesh::units::counted;
 use anastomesh_network::flow::{NotConverged, solve_between};
 use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
@@ -14,10 +14,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of stations per branch.
 const STATIONS: usize = 9;
-/// Distance of stations from bifurcations, in radii of the branch, if it is long enough.
-const CLEAR: f64 = 1.5;
-/// Stations lie in this middle part of short branches.
-const MIDDLE: [f64; 2] = [0.3, 0.7];
+/// Distance of stations from terminals and from bifurcations, in the largest radius there. Closer stations differ by up to 3 %.
+const CLEAR: [f64; 2] = [1.0, 2.5];
+/// Largest part of a branch without stations, at each end.
+const END_PART: f64 = 0.3;
 /// Largest distance of a cell from an axis, in radii. Cells of a mesh of the network are within about 1.2.
 const INSIDE: f64 = 1.5;
 /// Part of the cells that may be outside: cells in the webs of wide bifurcations.
@@ -28,6 +28,9 @@ const LONG: f64 = 4.0;
 const AT_TERMINAL: f64 = 3.0;
 /// Largest distance of a wall cell from the wall for the correction of shear, in radii.
 const NEAR_WALL: f64 = 0.5;
+
+/// Width of the kernel for the pressure at a node, in radii.
+const KERNEL: f64 = 1.5;
 
 /// Flow along the vessels.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,10 +173,13 @@ impl Along {
         if let Some(branch) = along.branches.iter().find(is_missing) {
             return Err(Misfit::Empty { nodes: branch.nodes.map(|node| network.nodes[node as usize].original) });
         }
-        along.add_flow(&spots, result);
+        along.add_flow(network, &spots, result);
         along.add_shear(network, &spots, result, scale, fluid.viscosity);
         along.pressure = node_pressures(network, &spots, result, scale);
         let pressures = along.add_terminals(network, inlets, &spots, result, scale)?;
+        for (node, pressure) in &pressures {
+            along.pressure[node.index()] = *pressure;
+        }
         along.add_expected(network, inlets, &pressures, fluid.viscosity)?;
         Ok(along)
     }
@@ -223,8 +229,11 @@ impl Along {
     }
 
     /// Sums fluxes between the cells on both sides of each station.
-    fn add_flow(&mut self, spots: &[Spot], result: &FlowResult) {
-        let stations: Vec<[f64; STATIONS]> = self.branches.iter().map(stations).collect();
+    fn add_flow(&mut self, network: &Skeleton, spots: &[Spot], result: &FlowResult) {
+        let clear = clearances(network);
+        let stations =
+            self.branches.iter().map(|branch| stations(branch, branch.nodes.map(|node| clear[node as usize])));
+        let stations: Vec<[f64; STATIONS]> = stations.collect();
         let mut sums = vec![[(0.0, 0_u32); STATIONS]; self.branches.len()];
         for face in &result.inner {
             let [a, b] = face.cells.map(|cell| spots[cell as usize]);
@@ -252,7 +261,9 @@ impl Along {
         let mut of_edge = vec![[0.0; 2]; network.edges.len()];
         for face in result.outer.iter().filter(|face| face.is_wall) {
             let spot = spots[face.cell as usize];
-            let shear = face.shear.map_or_else(|| viscosity * near_gradient(face.near, spot.radius), |s| scale * s);
+            let shear = face
+                .shear
+                .map_or_else(|| viscosity * near_gradient(face.near, spot.radius, result.is_nodal), |s| scale * s);
             let (area, sum) = (face.area.norm(), &mut of_edge[spot.edge.index()]);
             *sum = [sum[0] + area * shear, sum[1] + area];
         }
@@ -355,39 +366,55 @@ fn arcs(network: &Skeleton) -> Vec<[f64; 2]> {
     arcs
 }
 
-/// Stations along a branch, ascending.
-fn stations(branch: &BranchFlow) -> [f64; STATIONS] {
-    let clear = (CLEAR * branch.radius / branch.length.max(f64::MIN_POSITIVE)).min(MIDDLE[0]);
-    let [from, to] = [clear, 1.0 - clear];
-    std::array::from_fn(|i| branch.length * (from + (to - from) * i as f64 / (STATIONS - 1) as f64))
+/// Distance of stations from each node.
+fn clearances(network: &Skeleton) -> Vec<f64> {
+    let mut widest = vec![(0_u32, 0.0_f64); network.nodes.len()];
+    for edge in &network.edges {
+        for (node, radius) in edge.nodes.iter().zip(edge.radii) {
+            let here = &mut widest[node.index()];
+            *here = (here.0 + 1, here.1.max(radius));
+        }
+    }
+    widest.into_iter().map(|(edges, radius)| radius * CLEAR[usize::from(edges > 1)]).collect()
 }
 
-/// Gradient of the velocity at a wall, for a parabolic profile between the wall and the axis.
-fn near_gradient(near: anastomesh_io::results::Near, radius: f64) -> f64 {
-    let share = (near.height / radius).min(NEAR_WALL);
+/// Stations along a branch, ascending.
+fn stations(branch: &BranchFlow, clear: [f64; 2]) -> [f64; STATIONS] {
+    let [from, behind] = clear.map(|clear| clear.min(END_PART * branch.length));
+    let step = (branch.length - from - behind) / (STATIONS - 1) as f64;
+    std::array::from_fn(|i| from + step * i as f64)
+}
+
+/// Gradient of the velocity at a wall. A finite volume solver balances forces with the difference of a cell and its wall;
+/// nodes are on a parabolic profile between the wall and the axis.
+fn near_gradient(near: Near, radius: f64, is_nodal: bool) -> f64 {
+    let share = if is_nodal { (near.height / radius).min(NEAR_WALL) } else { 0.0 };
     if near.height > 0.0 { near.speed / (near.height * (1.0 - 0.5 * share)) } else { 0.0 }
 }
 
-/// Pressure by node: a line is fitted to the cells of each edge, and the ends of the edges at a node are averaged by their
-/// number of cells.
+/// Pressure by node: a line is fitted to the cells near each end of each edge, and the ends at a node are averaged by the
+/// volume of their cells.
 fn node_pressures(network: &Skeleton, spots: &[Spot], result: &FlowResult, scale: f64) -> Vec<f64> {
-    // Sums of 1, t, t², p and t p, weighted by volume.
-    let mut sums = vec![[0.0; 5]; network.edges.len()];
+    // Sums of 1, x, x², p and x p for the distance x from each end, weighted by volume and a Gaussian kernel.
+    let mut sums = vec![[[0.0; 5]; 2]; network.edges.len()];
     for ((spot, pressure), volume) in spots.iter().zip(&result.pressures).zip(&result.volumes) {
-        let (t, p, sum) = (spot.t, scale * pressure, &mut sums[spot.edge.index()]);
-        for (sum, term) in sum.iter_mut().zip([1.0, t, t * t, p, t * p]) {
-            *sum += volume * term;
+        let (length, p) = (network.length(spot.edge) / (KERNEL * spot.radius), scale * pressure);
+        for (sums, x) in sums[spot.edge.index()].iter_mut().zip([length * spot.t, length * (1.0 - spot.t)]) {
+            let weight = volume * (-0.5 * x * x).exp();
+            for (sum, term) in sums.iter_mut().zip([1.0, x, x * x, p, x * p]) {
+                *sum += weight * term;
+            }
         }
     }
     let mut nodes = vec![[0.0; 2]; network.nodes.len()];
-    for (edge, [w, t, tt, p, tp]) in network.edges.iter().zip(sums).filter(|(_, sums)| sums[0] > 0.0) {
-        let (mean_t, mean_p) = (t / w, p / w);
-        let variance = tt / w - mean_t * mean_t;
-        // Cells of short edges may all be at one end.
-        let slope = if variance > 1e-4 { (tp / w - mean_t * mean_p) / variance } else { 0.0 };
-        for (node, at) in edge.nodes.iter().zip([0.0, 1.0]) {
+    for (edge, ends) in network.edges.iter().zip(sums) {
+        for (node, [w, x, xx, p, xp]) in edge.nodes.iter().zip(ends).filter(|(_, sums)| sums[0] > 0.0) {
+            let (mean_x, mean_p) = (x / w, p / w);
+            let variance = xx / w - mean_x * mean_x;
+            // Cells of short edges may all be at one place.
+            let slope = if variance > 1e-3 { (xp / w - mean_x * mean_p) / variance } else { 0.0 };
             let sum = &mut nodes[node.index()];
-            *sum = [sum[0] + w * (mean_p + slope * (at - mean_t)), sum[1] + w];
+            *sum = [sum[0] + w * (mean_p - slope * mean_x), sum[1] + w];
         }
     }
     nodes.into_iter().map(|[sum, weight]| if weight > 0.0 { sum / weight } else { f64::NAN }).collect()

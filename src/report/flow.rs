@@ -206,12 +206,12 @@ impl ResultSummary {
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let missing = match self.branches_without_flow {
             0 => String::new(),
-            count => format!("; {} too short for a flow rate", counted(count, "branch")),
+            count => format!("; {} too short for a flow rate", counted(count, "vessel")),
         };
         let size =
-            format!("{}: {}, {}{missing}", self.time, counted(self.cells, "cell"), counted(self.branches, "branch"));
+            format!("{}: {}, {}{missing}", self.time, counted(self.cells, "cell"), counted(self.branches, "vessel"));
         let flow = format!(
-            "inflow {:.4e}, outflow {:.4e}; branches differ from 1D by median {}, max {}; spread within a branch max {}",
+            "inflow {:.4e}, outflow {:.4e}; flow differs from 1D by median {}, max {}; spread within a vessel max {}",
             self.inflow,
             self.outflow,
             percent(self.median_flow_difference),

@@ -18,6 +18,8 @@ pub struct FlowResult {
     pub inner: Vec<InnerFlux>,
     /// Faces of the boundary.
     pub outer: Vec<OuterFlux>,
+    /// True if velocities are those of nodes; else they are means of cells, and gradients at walls are those of the solver.
+    pub is_nodal: bool,
     /// True if pressures and shear stresses are divided by the density, as in solvers of incompressible flow.
     pub is_kinematic: bool,
 }

@@ -26,7 +26,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<FlowResult, ResultFault> 
         return Err(ResultFault::Astray { what: "a cell", index: index.into(), count: nodes });
     }
     let fields = Fields::read(bytes, nodes)?;
-    let mut result = FlowResult { name: name.to_owned(), ..FlowResult::default() };
+    let mut result = FlowResult { name: name.to_owned(), is_nodal: true, ..FlowResult::default() };
     for tet in &mesh.tets {
         let corners = tet.map(|node| mesh.points[node as usize]);
         result.cells.push(center(&corners));

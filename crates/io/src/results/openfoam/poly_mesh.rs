@@ -141,14 +141,14 @@ impl PolyMesh {
     }
 
     fn add_cells(&mut self) -> Result<(), ResultFault> {
-        let count = self.owner.iter().max().map_or(0, |&cell| cell as usize + 1);
         // More cells than faces would mean cells without faces.
-        if count > self.owner.len() {
-            return Err(ResultFault::Astray { what: "owner", index: count as i64 - 1, count: self.owner.len() });
+        let faces = self.owner.len();
+        for (what, cells) in [("owner", &self.owner), ("neighbour", &self.neighbour)] {
+            if let Some(&cell) = cells.iter().find(|&&cell| cell as usize >= faces) {
+                return Err(ResultFault::Astray { what, index: cell.into(), count: faces });
+            }
         }
-        if let Some(&cell) = self.neighbour.iter().find(|&&cell| cell as usize >= count) {
-            return Err(ResultFault::Astray { what: "neighbour", index: cell.into(), count });
-        }
+        let count = self.owner.iter().chain(&self.neighbour).max().map_or(0, |&cell| cell as usize + 1);
         let mut sums = vec![(Vec3::zeros(), 0.0_f64); count];
         self.each_side(|cell, face, _| {
             let sum = &mut sums[cell];
