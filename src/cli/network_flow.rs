@@ -46,9 +46,9 @@ pub struct Args {
     /// Vessels of models and tables
     #[arg(long, value_enum, default_value_t = VesselsArg::Edges, help_heading = "Output")]
     vessels: VesselsArg,
-    /// Stiffness E h / r of vessel walls, for Young's modulus E, wall thickness h and radius r: a constant K3, or
-    /// K1,K2,K3 for K1 exp(K2 r) + K3. Units are consistent with the mesh (default: 2e6,-2253,8.65e4, arteries in SI
-    /// units). Steady models without this option have rigid vessels
+    /// Stiffness E h / r of vessel walls (Young's modulus, wall thickness, radius): a constant K3, or K1,K2,K3 for
+    /// K1 exp(K2 r) + K3. Units are consistent with the mesh (default: 2e6,-2253,8.65e4, arteries in SI units). Steady models
+    /// without this option have rigid vessels
     #[arg(long, value_name = "K3|K1,K2,K3", help_heading = "Output", allow_hyphen_values = true)]
     stiffness: Option<StiffnessArg>,
     /// Inlet node, by its name or number in the file; repeatable (default: the roots of the file, or else the widest

@@ -1,7 +1,7 @@
 //! Results of a flow solver along the vessels of its network.
 //!
 //! Each cell belongs to the vessel whose wall is nearest. The flow rate at a station is the sum of the fluxes through the
-//! faces between cells before and after it, which conserves the flow as exactly as the solver does.
+//! faces between cells before and after it. It conserves the flow as the solver does.
 
 use super::vessels::poiseuille_shear;
 use crate::fidelity::Tubes;
@@ -295,7 +295,7 @@ impl Along {
             let distance = |node: &NodeId| (network.node(*node).position - face.center).norm();
             let nearest = |nodes: &[NodeId]| nodes.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
             let own: Vec<NodeId> = ends.into_iter().filter(|&node| adjacency.valence(node) == 1).collect();
-            // Cells of a very short vessel may belong to its neighbour.
+            // Cells of a short vessel may belong to its neighbour.
             let near = nearest(&own).or_else(|| nearest(&terminals));
             let near = near.filter(|node| distance(node) <= AT_TERMINAL * spot.radius);
             let node = near.ok_or(Misfit::Open { place: face.center.into() })?;
@@ -385,15 +385,18 @@ fn stations(branch: &BranchFlow, clear: [f64; 2]) -> [f64; STATIONS] {
     std::array::from_fn(|i| from + step * i as f64)
 }
 
-/// Gradient of the velocity at a wall. A finite volume solver balances forces with the difference of a cell and its wall;
-/// nodes are on a parabolic profile between the wall and the axis.
+/// Gradient of the velocity at a wall.
+///
+/// A finite volume solver balances forces with the difference of a cell and its wall. Nodes are on a parabolic profile
+/// between the wall and the axis.
 fn near_gradient(near: Near, radius: f64, is_nodal: bool) -> f64 {
     let share = if is_nodal { (near.height / radius).min(NEAR_WALL) } else { 0.0 };
     if near.height > 0.0 { near.speed / (near.height * (1.0 - 0.5 * share)) } else { 0.0 }
 }
 
-/// Pressure by node: a line is fitted to the cells near each end of each edge, and the ends at a node are averaged by the
-/// volume of their cells.
+/// Pressure by node.
+///
+/// A line is fitted to the cells near each end of each edge. The ends at a node are averaged by the volume of their cells.
 fn node_pressures(network: &Skeleton, spots: &[Spot], result: &FlowResult, scale: f64) -> Vec<f64> {
     // Sums of 1, x, x², p and x p for the distance x from each end, weighted by volume and a Gaussian kernel.
     let mut sums = vec![[[0.0; 5]; 2]; network.edges.len()];

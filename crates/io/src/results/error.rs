@@ -47,7 +47,7 @@ pub enum ResultFault {
         what: String,
     },
     /// A list has another length than the mesh.
-    #[error("{what} has {found} values, and the mesh has {expected}; give a result of this mesh")]
+    #[error("{what} has length {found} instead of {expected}; give a result of this mesh")]
     Length {
         /// Name of the list.
         what: String,

@@ -103,12 +103,7 @@ fn fluxes_and_shear_of_the_solver_take_precedence() {
 #[test]
 fn faults_of_cases_are_named() {
     for (file, from, to, message) in [
-        (
-            "12/U",
-            "2 ((3 0 0) (3 0 0))",
-            "1 ((3 0 0))",
-            "U has 1 values, and the mesh has 2; give a result of this mesh",
-        ),
+        ("12/U", "2 ((3 0 0) (3 0 0))", "1 ((3 0 0))", "U has length 1 instead of 2; give a result of this mesh"),
         ("12/U", "(3 0 0))", "(3 0 nan))", "U has a value that is not finite (number 6); the solver diverged"),
         ("12/U", "inlet {", "entry {", "'patch inlet of U' is missing; run the solver with this field"),
         ("12/p", "internalField", "internal", "'internalField of p' is missing; run the solver with this field"),
@@ -192,7 +187,7 @@ fn nodal_results_are_read() {
     });
     assert!((cell + result.inner[0].flux).is_finite() && result.inner[0].flux > 0.0 && flux.is_finite());
     for (velocity, pressure, message) in [
-        ("0 0 0", "1 2 3 4 8", "array Velocity has 3 values, and the mesh has 15"),
+        ("0 0 0", "1 2 3 4 8", "array Velocity has length 3 instead of 15"),
         (
             "0 0 0  0 0 0  0 0 0  0 0 0  6 0 nan",
             "1 2 3 4 8",

@@ -25,7 +25,7 @@ pub enum SvZeroDError {
         source: serde_json::Error,
     },
     /// A vessel has another number of radii than of ends of edges.
-    #[error("vessel {vessel} has {nodes} nodes and {radii} radii; give at least 2 nodes, and 2 radii per edge")]
+    #[error("vessel {vessel}: the list of nodes has length {nodes}, and that of radii {radii}; give 2 radii per edge")]
     Radii {
         /// Number of the vessel, from 0.
         vessel: usize,
