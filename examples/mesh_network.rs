@@ -25,7 +25,8 @@ pub fn mesh_network(network: &Path, output: &Path) -> Result<(), Box<dyn Error>>
     // The cures fill radii that cannot be used.
     let file = read_network(network, &NetworkOptions::default().any_radii(true))?;
     let (plan, refine) = (MeshPlan::default(), RefineParams::default());
-    let noted = format!("mesh --rho {} --follow {} --refine {}", plan.rho, plan.follow, refine.iterations);
+    let mut noted = format!("mesh --rho {} --follow {}", plan.rho, plan.follow);
+    let iterations = refine.iterations;
 
     let store = Store::in_memory();
     let made = Run::new(file).plan(plan).refine(refine).mesh_into(&store, &|_| Ok(()), &())?;
@@ -37,6 +38,10 @@ pub fn mesh_network(network: &Path, output: &Path) -> Result<(), Box<dyn Error>>
     }
     for row in made.caps.iter().flat_map(|caps| &caps.rows) {
         println!("{}: flow {:.3e}, area {:.3e}", row.name, row.flow, row.area);
+    }
+    // A network that gives a valid mesh as it is is not refined.
+    if made.networks.refine.is_some() {
+        noted += &format!(" --refine {iterations}");
     }
     write_mesh(output, &made.mesh, &made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), noted))?;
     match &made.defects[..] {

@@ -68,8 +68,12 @@ pub use anastomesh_tet as tet;
 /// network and flow. [`mesh_network`](meshing::mesh_network) and [`mesh_into`](meshing::mesh_into) mesh a network as it is.
 pub mod meshing {
     // A whole run.
-    pub use crate::fidelity::{Along, Bin, Displaced, Displacements, Fidelity, Spread};
-    pub use crate::run::{Attempt, Defect, Fault, MeshingError, NetworkMesh, Networks, PreparedRun, Run, Strategy};
+    pub use crate::fidelity::{
+        Along, Bin, Change, Changes, Displaced, Displacements, Fidelity, RadiusReference, SectionErrors, Spread,
+    };
+    pub use crate::run::{
+        Attempt, Defect, Fault, Limits, MeshingError, NetworkMesh, Networks, PreparedRun, RefinedAxis, Run, Strategy,
+    };
     // Its steps and reports.
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;

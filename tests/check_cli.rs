@@ -63,7 +63,11 @@ fn check_finds_what_is_broken() {
             let output = run("check", &[&path], &[]);
             assert_code(&output, GATE_NOT_MET);
             let said = stdout(&output);
-            assert!(said.contains(&format!("FAIL {statement}\n")) && said.ends_with("NOT valid\n"), "{said}");
+            assert!(
+                said.contains(&format!("FAIL {statement}\n"))
+                    && said.lines().last().is_some_and(|line| line.starts_with("NOT valid: ")),
+                "{said}"
+            );
             let verdict = &json(&run("check", &[&path], &["--json"]))["verdict"];
             assert_eq!(verdict, "invalid");
         }

@@ -46,7 +46,19 @@ impl Record {
 
     /// Removes parts that vary between machines or implementations: times, sizes, positions.
     fn stable(said: &str) -> String {
-        let numbered = ["mesh ", "shape ", "vessels ", "surface ", "file ", "FAIL ", "         ", "  layers "];
+        let numbered = [
+            "mesh ",
+            "shape ",
+            "axis ",
+            "radius ",
+            "lumen ",
+            "surface ",
+            "file ",
+            "FAIL ",
+            "         ",
+            "  layers ",
+            "NOT valid",
+        ];
         let line = |line: &str| {
             let has = numbered.iter().any(|start| line.starts_with(start));
             if has { format!("{}\n", without_numbers(line)) } else { format!("{line}\n") }

@@ -76,3 +76,21 @@ fn inlets_are_named_as_the_file_names_them() {
     let refused = Run::of_skeleton(tree()).roots(["7"]).mesh(&());
     assert!(matches!(refused, Err(MeshingError::Inlet(_))), "{refused:?}");
 }
+
+/// Two vessels that leave one node at a small angle: their tubes overlap, but make one lumen there.
+fn narrow_fork() -> Skeleton {
+    let points = [[0.0; 3], [0.0, 0.0, 12.0], [6.0, 0.0, 32.0], [-6.0, 0.0, 32.0]];
+    network(&points, &[(0, 1, 1.0), (1, 2, 1.0), (1, 3, 1.0)])
+}
+
+#[test]
+fn a_network_that_gives_a_valid_mesh_is_not_moved() {
+    let given = narrow_fork();
+    assert!(!given.overlaps(&given.adjacency()).pairs.is_empty());
+    let plain = Run::of_skeleton(given.clone()).mesh(&()).unwrap();
+    let refined = Run::of_skeleton(given).refine(RefineParams::default()).mesh(&()).unwrap();
+    assert_eq!((&plain.defects[..], &refined.defects[..]), (&[][..], &[][..]));
+    assert_eq!((refined.attempts.len(), refined.attempts[0].strategy), (1, Strategy::AsGiven));
+    assert!(refined.networks.refine.is_none() && refined.networks.refined.is_none());
+    assert_eq!((plain.mesh, plain.network), (refined.mesh, refined.network));
+}

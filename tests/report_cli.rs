@@ -93,7 +93,12 @@ fn what_is_wrong_is_shown_where_it_is() {
     let html = page(&out);
     holds(
         &html,
-        &["class=\"verdict bad\">NOT valid<", "pictures aimed", "1 tetrahedron is inverted or flat", "(circled)"],
+        &[
+            "class=\"verdict bad\">NOT valid: 1 tetrahedron",
+            "pictures aimed",
+            "1 tetrahedron is inverted or flat",
+            "(circled)",
+        ],
     );
 }
 

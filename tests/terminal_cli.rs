@@ -15,11 +15,22 @@ fn a_summary_says_what_was_done_and_verbose_all_of_it() {
     let short = mesh(&fixture("tree_30.vtp"), &out, &[]);
     assert_code(&short, FINE);
     let said = stderr(&short);
-    let starts = ["network  30 nodes, 29 edges", "blocks ", "mesh ", "shape ", "vessels ", "file ", "time "];
+    let starts = [
+        "network  30 nodes, 29 edges",
+        "blocks ",
+        "mesh ",
+        "shape ",
+        "axis ",
+        "radius ",
+        "lumen ",
+        "changes ",
+        "file ",
+        "time ",
+    ];
     for start in starts {
         assert!(said.lines().any(|line| line.starts_with(start)), "'{start}' in {said}");
     }
-    assert!(said.ends_with("\nvalid\n") && said.lines().count() < 15 && !said.contains("  ok   "), "{said}");
+    assert!(said.ends_with("\nvalid\n") && said.lines().count() < 18 && !said.contains("  ok   "), "{said}");
     let long = stderr(&mesh(&fixture("tree_30.vtp"), &out, &["--verbose"]));
     assert!(long.contains("  ok   every tetrahedron has positive volume\n") && long.ends_with("\nvalid\n"), "{long}");
     assert!(stderr(&mesh(&fixture("tree_30.vtp"), &out, &["-q"])).is_empty());
@@ -110,8 +121,8 @@ fn messages_are_lines_or_objects_without_colours() {
         .collect();
     let level = |line: &Value| line["level"].as_str().expect("a level").to_owned();
     assert!(lines.iter().any(|line| level(line) == "note"));
-    let result = lines.iter().find(|line| level(line) == "result").expect("a result");
-    assert!(result["message"].as_str().is_some_and(|m| m.ends_with("\nvalid")));
+    let result = lines.last().expect("a result");
+    assert!(level(result) == "result" && result["message"] == "valid", "{result}");
     let refused = mesh(Path::new("absent.swc"), &out, &["--log-format", "json"]);
     assert_code(&refused, BAD_INPUT);
     let error: Value = serde_json::from_str(stderr(&refused).trim()).expect("an object");
@@ -169,4 +180,84 @@ fn the_list_of_options_is_that_of_the_program() {
     let kept = fs::read_to_string(&path).expect("docs/options.md");
     assert!(said == kept, "docs/options.md is old: ANASTOMESH_WRITE_OPTIONS=1 cargo test --test terminal_cli");
     assert!(said.contains("## mesh\n") && said.contains("`--rho <RHO>`") && said.contains("| `3` |"));
+}
+
+/// Output of a shell command in a pseudo-terminal, without colours; `None` without the program `script`.
+fn in_terminal(command: &str) -> Option<String> {
+    let mut script = std::process::Command::new("script");
+    script.args(["-qefc", command, "/dev/null"]).env("TERM", "xterm").env("PROGRAM", env!("CARGO_BIN_EXE_anastomesh"));
+    let made = script.stdin(std::process::Stdio::null()).output().ok()?;
+    Some(stdout(&made).replace("\r\n", "\n"))
+}
+
+/// Removes control sequences.
+fn plain(text: &str) -> String {
+    let mut out = String::new();
+    let mut chars = text.chars();
+    while let Some(c) = chars.next() {
+        if c == '\u{1b}' {
+            chars.by_ref().find(char::is_ascii_alphabetic);
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
+#[test]
+fn lines_wrap_between_words_in_a_terminal_alone() {
+    let folder = folder();
+    let (tree, out) = (fixture("measured.swc"), folder.path().join("t.vtu"));
+    let command = format!("NO_COLOR=1 COLUMNS=50 $PROGRAM mesh {} -o {} 2>&1", tree.display(), out.display());
+    let Some(said) = in_terminal(&command) else { return };
+    // What follows the last bar; a bar is overwritten in its line.
+    let lines: Vec<String> =
+        plain(&said).lines().map(|l| l.rsplit('\r').next().unwrap_or_default().to_owned()).collect();
+    let at = lines.iter().position(|line| line.starts_with("network ")).unwrap_or_else(|| panic!("{said}"));
+    let is_path = |line: &String| line.contains("t.vtu") || line.contains("t_patches.csv");
+    assert!(lines[at..].iter().filter(|line| !is_path(line)).all(|line| line.chars().count() <= 50), "{lines:#?}");
+    assert!(lines[at..].iter().any(|line| line.starts_with("         ")), "{lines:#?}");
+    assert_eq!(lines.last().map(String::as_str), Some("valid"));
+    // Without a terminal, no line is broken.
+    let made = mesh(&tree, &out, &[]);
+    assert!(stderr(&made).lines().any(|line| line.chars().count() > 100));
+}
+
+#[test]
+fn a_stopped_run_leaves_no_bar() {
+    let folder = folder();
+    let (tree, out) = (fixture("tree_30.vtp"), folder.path().join("t.vtu"));
+    let fine = "--rho 9 --memory 20GiB -j 1";
+    let run = format!("$PROGRAM mesh {} -o {} {fine} 2>&1", tree.display(), out.display());
+    // The program gets the signal alone, as the shell ignores it.
+    let command = format!("NO_COLOR=1 COLUMNS=80; export NO_COLOR COLUMNS; {run} & sleep 0.7; kill -TERM $!; wait $!");
+    let Some(said) = in_terminal(&command) else { return };
+    if !said.contains("stopping; press Ctrl-C") {
+        // The run was over, or had not begun.
+        return;
+    }
+    let (bars, rest) = said.split_once("stopping; press Ctrl-C").expect("both");
+    assert!(bars.contains("blocks"), "no bar was shown: {said:?}");
+    // The line of the bar is erased before the message, and none is drawn after it.
+    assert!(bars.ends_with("\u{1b}[2K") || bars.ends_with("\u{1b}[K") || bars.ends_with('\r'), "{said:?}");
+    assert!(!rest.contains('%') && rest.contains("stopped; nothing is kept"), "{said:?}");
+}
+
+/// Levels of messages are true, and no message repeats its level.
+#[test]
+fn levels_of_messages_are_true() {
+    let folder = folder();
+    let out = folder.path().join("t.vtu");
+    let lines = |options: &[&str]| -> Vec<Value> {
+        let made = mesh(&fixture("tree_30.swc"), &out, &[options, &["--log-format", "json"]].concat());
+        stderr(&made).lines().map(|line| serde_json::from_str(line).expect("an object")).collect()
+    };
+    let refused = lines(&["--rho", "abc"]);
+    let message = refused[0]["message"].as_str().expect("text");
+    assert!(refused[0]["level"] == "error" && message.starts_with("invalid value 'abc'"), "{message}");
+    assert!(message.contains("expected a number"), "{message}");
+    let unfaithful = lines(&["--max-lumen-error", "0.001"]);
+    let last = unfaithful.last().expect("a verdict");
+    assert!(last["level"] == "error" && last["message"].as_str().is_some_and(|m| m.starts_with("not faithful: ")));
+    assert!(unfaithful[..unfaithful.len() - 1].iter().all(|line| line["level"] != "error"), "{unfaithful:?}");
 }

@@ -112,9 +112,10 @@ impl BlockArgs {
         Ok(file)
     }
 
-    /// Options that the mesh depends on, as command-line text.
-    pub fn typed(&self) -> String {
-        let refine = self.refine.map_or_else(String::new, |n| format!(" --refine {n}"));
+    /// Options that the mesh depends on, as command-line text. It does not depend on the refinement if the network was meshed
+    /// as given.
+    pub fn typed(&self, is_refined: bool) -> String {
+        let refine = self.refine.filter(|_| is_refined).map_or_else(String::new, |n| format!(" --refine {n}"));
         let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
         let size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
         format!("--rho {} --follow {}{stretch}{size}{refine}", self.rho, self.follow)

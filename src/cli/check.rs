@@ -12,10 +12,11 @@ use super::progress::Bars;
 use super::stop::Stop;
 use crate::report::page::{self, Section};
 use crate::report::summary::{of_check, of_mesh};
+use crate::report::verdict::Verdict;
 use anastomesh_io::volume::{MeshFile, MeshFormat, VtuPieces, VtuPiecesError, read_mesh};
 use anastomesh_mesh::check::parts::{PiecesError, check_pieces};
 use anastomesh_mesh::check::text::conditions;
-use anastomesh_mesh::check::{CheckReport, Verdict, check_tets, check_volume};
+use anastomesh_mesh::check::{CheckReport, check_tets, check_volume};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::progress::Stage;
 use anastomesh_mesh::{TET_FACES, VolumeMesh};
@@ -44,31 +45,34 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = thread_pool(args.common.threads)?;
     let bar = Bars::new(args.common.quiet, args.common.progress, Stop::deaf());
     let (report, mesh) = bar.during(Stage::Check, || pool.install(|| checked(args)))?;
-    let is_wrong = report.verdict == Verdict::Invalid;
-    pool.install(|| write_page(args, &report, mesh))?;
-    if args.common.json || is_wrong || !args.common.quiet {
-        print(args.common.json, &report, || text(&report, args))?;
+    let verdict = Verdict::of_check(&report);
+    pool.install(|| write_page(args, &report, &verdict, mesh))?;
+    if args.common.json || !args.common.quiet {
+        print(args.common.json, &report, || text(&report, &verdict, args))?;
+    } else if !verdict.is_good {
+        log::error(&format!("{}: {}", args.mesh.display(), verdict.text));
     }
-    Ok(if is_wrong { Exit::GateNotMet } else { Exit::Fine })
+    Ok(if verdict.is_good { Exit::Fine } else { Exit::GateNotMet })
 }
 
 fn checked(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     by_blocks(args)?.map_or_else(|| as_a_whole(args), Ok)
 }
 
-/// Text report: size of the mesh and failed conditions; all conditions with `-v`.
-fn text(report: &CheckReport, args: &Args) -> String {
+/// Text report: size of the mesh, failed conditions, verdict; all conditions with `-v`.
+fn text(report: &CheckReport, verdict: &Verdict, args: &Args) -> String {
     let verbose = args.common.verbose;
     let page: Vec<&Path> = args.report.page().into_iter().map(PathBuf::as_path).collect();
     let all = if verbose { conditions(report) } else { String::new() };
-    format!("{all}{}{}{}", of_mesh(report), ended(&page).rows(&[]), of_check(report, verbose))
+    let (mesh, ended, check) = (of_mesh(report), ended(&page).rows(&[]), of_check(report, verbose));
+    format!("{all}{mesh}{ended}{check}{}", verdict.text)
 }
 
 /// Writes the HTML report.
-fn write_page(args: &Args, report: &CheckReport, mut mesh: OpenedMesh) -> Result<(), Failure> {
+fn write_page(args: &Args, report: &CheckReport, verdict: &Verdict, mut mesh: OpenedMesh) -> Result<(), Failure> {
     mesh.label_boundary();
     let (mesh, notes) = (mesh.source(), mesh.notes());
-    args.report.write(&args.mesh, Some(page::headline(report)), &notes.options, |page| {
+    args.report.write(&args.mesh, Some(page::headline(report, verdict)), &notes.options, |page| {
         page.add(page::summary(report, page::LengthUnit::default()));
         page.add(Section::new("Overview").pictures(&page::mesh_pictures(mesh)?, false)?);
         page.add(page::validity(report, mesh)?);

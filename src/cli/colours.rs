@@ -10,7 +10,7 @@ const ODD: Style = AnsiColor::Yellow.on_default().effects(Effects::BOLD);
 const HEAD: Style = AnsiColor::Cyan.on_default();
 
 /// Width of row labels, in columns.
-const WORD: usize = 8;
+pub const LABEL: usize = 8;
 
 /// True if the environment allows colours (<https://no-color.org>).
 pub fn are_wanted() -> bool {
@@ -25,6 +25,9 @@ pub fn painted(level: &str, before: &str, message: &str) -> String {
         "warning" => wrapped(ODD, before),
         _ => before.to_owned(),
     };
+    if level == "failure" {
+        return out + &wrapped(BAD, message);
+    }
     if level != "result" {
         return out + message;
     }
@@ -40,14 +43,22 @@ pub fn painted(level: &str, before: &str, message: &str) -> String {
 /// Returns a line of a result with colours.
 fn row(line: &str) -> String {
     let (blank, text) = line.split_at(line.len() - line.trim_start().len());
-    for (style, word) in
-        [(BAD, "FAIL"), (BAD, "FAILED"), (BAD, "NOT valid"), (GOOD, "valid"), (GOOD, "ok"), (ODD, "no fault found")]
-    {
+    let words = [
+        (BAD, "FAIL"),
+        (BAD, "FAILED"),
+        (BAD, "NOT valid"),
+        (GOOD, "valid"),
+        (GOOD, "ok"),
+        (GOOD, "no vessels overlap"),
+        (ODD, "no fault found"),
+    ];
+    // Deeper lines continue a row.
+    for (style, word) in words.into_iter().filter(|_| blank.len() <= LABEL) {
         if let Some(rest) = text.strip_prefix(word).filter(|rest| !rest.starts_with(char::is_alphanumeric)) {
             return format!("{blank}{}{rest}", wrapped(style, word));
         }
     }
-    match line.split_at_checked(WORD) {
+    match line.split_at_checked(LABEL) {
         Some((word, rest)) if is_head(word) && rest.starts_with(' ') && !rest.starts_with("  ") => {
             format!("{}{rest}", wrapped(HEAD, word))
         }

@@ -1,21 +1,12 @@
 //! Options and functions shared by commands.
 
+use super::clock::elapsed;
 use super::exit::Failure;
 use super::log;
 use super::progress::ProgressFormat;
 use crate::report::rows::Ended;
 use std::num::NonZeroUsize;
 use std::path::Path;
-use std::sync::OnceLock;
-use std::time::Instant;
-
-/// Start time of the program.
-static BEGIN: OnceLock<Instant> = OnceLock::new();
-
-/// Records the start time.
-pub fn begin() {
-    BEGIN.get_or_init(Instant::now);
-}
 
 /// General options.
 #[derive(Debug, clap::Args)]
@@ -41,20 +32,23 @@ pub struct Common {
 
 /// Outcome of a run: existing output files with their sizes, time and memory.
 pub fn ended(paths: &[&Path]) -> Ended {
-    let seconds = BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64();
-    Ended { files: written(paths), seconds, memory: peak_memory() }
+    Ended { files: written(paths), seconds: elapsed().as_secs_f64(), memory: peak_memory() }
 }
 
-/// Existing files and folders with their sizes, in bytes.
+/// Existing files and folders with the sizes of their contents, in bytes.
 fn written(paths: &[&Path]) -> Vec<(String, u64)> {
-    let size = |path: &Path| match path.metadata() {
-        Ok(data) if data.is_dir() => {
-            let inside = std::fs::read_dir(path).into_iter().flatten().flatten();
-            Some(inside.filter_map(|entry| entry.metadata().ok()).map(|data| data.len()).sum())
-        }
-        data => data.ok().map(|data| data.len()),
-    };
-    paths.iter().filter_map(|path| Some((path.display().to_string(), size(path)?))).collect()
+    let written = |path: &&&Path| path.exists();
+    paths.iter().filter(written).map(|path| (path.display().to_string(), size_of(path))).collect()
+}
+
+/// Size of a file, or of all files in a folder.
+fn size_of(path: &Path) -> u64 {
+    let Ok(data) = path.symlink_metadata() else { return 0 };
+    if !data.is_dir() {
+        return data.len();
+    }
+    let inside = std::fs::read_dir(path).into_iter().flatten().flatten();
+    inside.map(|entry| size_of(&entry.path())).sum()
 }
 
 /// Peak memory of the process in bytes; `None` if the system does not report it.
@@ -79,4 +73,20 @@ pub fn print(json: bool, value: &impl serde::Serialize, text: impl FnOnce() -> S
     }
     let out = serde_json::to_string_pretty(value).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
     log::print_bytes(format!("{out}\n").as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_size_of_a_folder_is_that_of_its_contents() {
+        let folder = tempfile::tempdir().unwrap();
+        let case = folder.path().join("tree.foam/constant/polyMesh");
+        std::fs::create_dir_all(&case).unwrap();
+        std::fs::write(case.join("points"), [0; 1000]).unwrap();
+        std::fs::write(folder.path().join("tree.foam/case.foam"), [0; 10]).unwrap();
+        assert_eq!(size_of(&folder.path().join("tree.foam")), 1010);
+        assert_eq!(written(&[&folder.path().join("absent")]), []);
+    }
 }

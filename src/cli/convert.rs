@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::fidelity::conclude;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
 use super::hint;
@@ -16,6 +17,7 @@ use super::log;
 use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::rows::row;
+use crate::report::verdict::Verdict;
 use anastomesh_io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use anastomesh_io::npy;
 use anastomesh_io::surface::{
@@ -124,7 +126,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     } else if !args.common.quiet {
         log::result(&format!("{counts}{}", ended(&[&args.output]).rows(&[])));
     }
-    Ok(Exit::Fine)
+    Ok(conclude(&args.common, &Verdict::good("converted")))
 }
 
 impl Args {

@@ -7,8 +7,9 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 42] = [
+const RARE: [&str; 44] = [
     "allow-displaced",
+    "allow-dropped",
     "angle-rate",
     "barrier-rate",
     "config",
@@ -33,6 +34,7 @@ const RARE: [&str; 42] = [
     "log-format",
     "make-missing",
     "max-displacement",
+    "max-lumen-error",
     "max-radius-edge",
     "metrics",
     "plot",

@@ -2,8 +2,9 @@
 
 use crate::pipeline::{FlowError, RunError, StoreError, TooLarge};
 use anastomesh_io::faults::FileError;
-use anastomesh_io::network::{NetworkFileError, NetworkFormat, NetworkNote};
+use anastomesh_io::network::{NetworkFileError, NetworkFormat, NetworkNote, NodeNames};
 use anastomesh_io::surface::SurfaceFormat;
+use anastomesh_skeleton::{NodeId, SkeletonError};
 use std::path::Path;
 
 /// Error of a network file, with the remedy.
@@ -34,6 +35,17 @@ pub fn of_note(note: &NetworkNote) -> String {
         _ => "",
     };
     format!("{note}{hint}")
+}
+
+/// Error of a network, with nodes named as in the file.
+pub fn of_skeleton(error: &SkeletonError, names: &NodeNames) -> String {
+    let text = error.to_string();
+    match error {
+        SkeletonError::BadPosition { original, .. } | SkeletonError::BadNodeRadius { original, .. } => {
+            text.replacen(&format!("node {original} "), &format!("node {} ", names.of(NodeId(*original))), 1)
+        }
+        _ => text,
+    }
 }
 
 /// Error of a block store, with the option that helps.

@@ -4,8 +4,10 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::bar;
 use super::colours::{self, painted};
 use super::exit::Failure;
+use super::wrap;
 
 /// True if messages are JSON. Set before a command runs.
 static AS_JSON: AtomicBool = AtomicBool::new(false);
@@ -58,6 +60,11 @@ pub fn result(message: &str) {
     said("result", "", message);
 }
 
+/// Prints the verdict of a run whose result is not what was asked for.
+pub fn failure(message: &str) {
+    said("failure", "", message);
+}
+
 /// Prints an error.
 pub fn error(message: &str) {
     said("error", "anastomesh: ", message);
@@ -79,15 +86,24 @@ pub fn progress(stage: &str, done: u64, total: u64) -> String {
 }
 
 fn said(level: &str, before: &str, message: &str) {
-    eprintln!("{}", line(level, before, message, io::stderr().is_terminal()));
+    let line = line(level, before, message, io::stderr().is_terminal());
+    bar::aside(|| eprintln!("{line}"));
 }
 
 fn line(level: &str, before: &str, message: &str, on_terminal: bool) -> String {
     let message = message.trim_end_matches('\n');
-    match is_json() {
-        true => serde_json::json!({ "level": level, "message": message }).to_string(),
-        false if on_terminal && colours::are_wanted() => painted(level, before, message),
-        false => format!("{before}{message}"),
+    if is_json() {
+        let level = if level == "failure" { "error" } else { level };
+        return serde_json::json!({ "level": level, "message": message }).to_string();
+    }
+    if !on_terminal {
+        return format!("{before}{message}");
+    }
+    let whole = format!("{before}{message}");
+    let whole = wrap::width().map_or_else(|| whole.clone(), |width| wrap::wrapped(&whole, width));
+    match whole.strip_prefix(before) {
+        Some(message) if colours::are_wanted() => painted(level, before, message),
+        _ => whole,
     }
 }
 

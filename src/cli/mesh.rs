@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::fidelity::{FidelityArgs, conclude};
 use super::flow::FlowArgs;
 use super::format::FormatArgs;
 use super::grid::GridArgs;
@@ -22,13 +23,13 @@ use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
-use crate::fidelity::{Along, Fidelity};
-use crate::pipeline::{Caps, Clock, Datum, Estimate, FlowPlan, JointStyle, MeshPlan, RunReport, Shard, VesselData};
+use crate::fidelity::{Along, Changes, Fidelity};
+use crate::pipeline::{Caps, Datum, Estimate, FlowPlan, JointStyle, MeshPlan, RunReport, Shard, VesselData};
 use crate::report::caps;
-use crate::report::fidelity::displaced;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
-use crate::run::{Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
+use crate::report::verdict::{Verdict, missing};
+use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with};
 use anastomesh_io::{ensure_text_writable, write_text};
@@ -36,12 +37,12 @@ use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::dihedral::DihedralHistogram;
+use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
-use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -76,13 +77,6 @@ pub struct Args {
     /// terminal of each component)
     #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
-    /// Maximum distance of the meshed axis from the input, in radii; exit code 1 if exceeded (default: 1 for measured
-    /// networks except at overlaps, no limit for others)
-    #[arg(long, help_heading = "Run", value_name = "R", value_parser = number)]
-    max_displacement: Option<f64>,
-    /// Warn instead of failing when the axis exceeds the limit
-    #[arg(long, help_heading = "Run")]
-    allow_displaced: bool,
     /// Folder for the inputs of failed blocks (default: MESH with `.failed` appended)
     #[arg(long, help_heading = "Run", value_name = "DIR")]
     dump_dir: Option<PathBuf>,
@@ -93,6 +87,8 @@ pub struct Args {
     /// Print an estimate of blocks, tetrahedra, time, memory and disk space, without meshing
     #[arg(long, help_heading = "Run")]
     dry_run: bool,
+    #[command(flatten)]
+    fidelity: FidelityArgs,
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
@@ -131,7 +127,12 @@ struct Found<'a> {
     network: &'a Skeleton,
     check: &'a CheckReport,
     fidelity: Option<&'a Fidelity>,
+    changes: &'a Changes,
     caps: Option<&'a Caps>,
+    defects: &'a [Defect],
+    /// Passes over the network, and the index of the one that gave the mesh.
+    attempts: (&'a [Attempt], usize),
+    verdict: &'a Verdict,
 }
 
 /// Output of `--json`.
@@ -145,6 +146,14 @@ struct Output<'a> {
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
     fidelity: Option<&'a Fidelity>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    changes: Option<&'a Changes>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    attempts: &'a [Attempt],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    defects: &'a [Defect],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verdict: Option<&'a str>,
 }
 
 /// Meshes a network and writes the mesh.
@@ -155,6 +164,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--work-dir cannot store smoothed joints: give --joint disc or --frozen-joints"));
     }
     let flow = args.flow.plan()?;
+    args.fidelity.limits()?;
     let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
     if !args.data.is_empty() && !format.holds_values() {
@@ -171,15 +181,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
-    let read = remarks(notes, &networks.prepare, args.common.verbose);
+    let read = remarks(notes, &networks.prepare, &networks.names, args.common.verbose);
     for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
         bars.note(&remark);
     }
     let work = if args.dry_run { None } else { args.work.open(shard, || prepared.manifest())? };
     let refined = || prepared.refined(work.as_ref().map(|work| &work.store), &bars);
     let prepared = pool.install(refined).map_err(|e| args.explain_alone(e))?;
-    if shard.is_none() {
-        args.tell_refined(&prepared, &stop)?;
+    // Shards do not write shared files.
+    if shard.is_none() && !args.dry_run && prepared.networks.refine.is_some() {
+        stop.keep();
+        args.write_refined(&prepared.networks)?;
     }
     if args.dry_run {
         let found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
@@ -235,10 +247,7 @@ impl Args {
         if let Some(iterations) = self.blocks.refine {
             run = run.refine(self.how.params(iterations));
         }
-        if let Some(radii) = self.max_displacement {
-            run = run.max_displacement(radii);
-        }
-        run.prepared().map_err(|e| self.explain_alone(e))
+        run.limits(self.fidelity.limits()?).prepared().map_err(|e| self.explain_alone(e))
     }
 
     /// Makes the blocks of a shard.
@@ -265,6 +274,7 @@ impl Args {
 
     /// Writes the mesh and the reports.
     fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+        self.tell_refined(&made.networks)?;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
         let options = WriteOptions::default()
@@ -276,52 +286,64 @@ impl Args {
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }
         };
-        let mut clock = Clock::default();
         let outlets = self.flow.outlets();
         let grouped = made.caps.as_mut().and_then(|caps| caps.group(&made.mesh, outlets));
         let written: &dyn MeshSource = match &grouped {
             Some(grouped) => grouped,
             None => &made.mesh,
         };
-        let notes = made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), self.typed());
+        let notes = made.notes(
+            concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
+            self.typed(made.networks.refine.is_some()),
+        );
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
-        clock.time(bars, Stage::Write, 0, write).map_err(|e| failed(&e))?;
+        bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         if let Some(caps) = &made.caps {
             self.write_table(caps, &made.networks.names)?;
         }
-        made.report.stages.extend(clock.stages());
-        let (fidelity, caps) = (made.fidelity.as_ref(), made.caps.as_ref());
-        let found = Found { mesh: written, network: &made.network, check: &made.check, fidelity, caps };
-        self.write_page(plan, &made.networks, &made.report, Some(&found))?;
-        self.print(plan, &made.networks, &made.report, Some((&made.check, fidelity)))?;
-        let invalid = !made.is_valid();
-        self.blocks.advise(&made.report, invalid);
-        let mut is_displaced = false;
-        for defect in &made.defects {
-            if let Defect::Displaced { bound, places } = defect {
-                is_displaced = true;
-                log::note(&displaced(places, *bound));
-            }
+        let name = |node| made.networks.names.of(NodeId(node));
+        let verdict = Verdict::of_mesh(&made.check, &made.report, &self.fidelity.refused(&made.defects), &name);
+        let mut run = made.report.clone();
+        run.stages = bars.stages();
+        let found = Found {
+            mesh: written,
+            network: &made.network,
+            check: &made.check,
+            fidelity: made.fidelity.as_ref(),
+            changes: &made.changes,
+            caps: made.caps.as_ref(),
+            defects: &made.defects,
+            attempts: (&made.attempts, made.kept),
+            verdict: &verdict,
+        };
+        if self.report.page().is_some() {
+            bars.during(Stage::Report, || self.write_page(plan, &made.networks, &run, Some(&found)))?;
+            run.stages = bars.stages();
         }
-        Ok(match () {
-            () if !made.report.failed.is_empty() => Exit::StageFailed,
-            () if invalid || (is_displaced && !self.allow_displaced) => Exit::GateNotMet,
-            () => Exit::Fine,
-        })
+        self.print(plan, &made.networks, &run, Some(&found))?;
+        if !self.common.quiet {
+            self.blocks.advise(&run, !made.is_valid());
+        }
+        self.fidelity.tell(&self.common, &made.defects, &run, &name);
+        let exit = conclude(&self.common, &verdict);
+        Ok(if run.failed.is_empty() { exit } else { Exit::StageFailed })
     }
 
     /// Failure of a run, after its reports.
     fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        if let Err(failure) = self.tell_refined(&networks) {
+            return failure;
+        }
         let paged = self.write_page(plan, &networks, &report, None);
         if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
             return failure;
         }
-        self.blocks.advise(&report, true);
-        Failure::stage(format!(
-            "{} could not be meshed (listed above); --keep-going meshes the rest",
-            counted(report.failed.len(), "block")
-        ))
+        if !self.common.quiet {
+            self.blocks.advise(&report, true);
+        }
+        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
+        Failure::stage(format!("{missing}; --keep-going meshes the rest"))
     }
 
     /// Failure of a run before its blocks.
@@ -351,15 +373,16 @@ impl Args {
         run: &RunReport,
         found: Option<&Found>,
     ) -> Result<(), Failure> {
-        let failed = || (Mark::Bad, format!("{} could not be meshed", counted(run.failed.len(), "block")));
-        let verdict = found.map_or_else(failed, |found| page::headline(found.check));
+        let name = |node| networks.names.of(NodeId(node));
+        let failed = || (Mark::Bad, missing(run, &name));
+        let verdict = found.map_or_else(failed, |found| page::headline(found.check, found.verdict));
         let unit = page::LengthUnit(self.network.units.map(|units| units.names()[1]));
         let invalid = found.is_none_or(|found| !found.check.is_valid());
         self.report.write(&self.output, Some(verdict), plan, |page| {
             page.add(page::advice(&self.blocks.advice(run, invalid)));
-            let Some(&Found { mesh, network, check, fidelity, caps }) = found else {
+            let Some(&Found { mesh, network, check, fidelity, changes, caps, .. }) = found else {
                 page.add(page::failed_blocks(&networks.network, run, unit)?);
-                page.add(page::run(run, &[]));
+                page.add(page::run(run, &[], &name));
                 return Ok(());
             };
             page.add(page::summary(check, unit));
@@ -374,12 +397,12 @@ impl Args {
                 page.add(page::quality(quality, &DihedralHistogram::of(mesh)?));
             }
             if let Some(fidelity) = fidelity {
-                page.add(page::fidelity(fidelity, &Along::of(network, mesh)?));
+                page.add(page::fidelity(fidelity, &Along::of(network, mesh)?, changes, &name));
             }
             if let Some(report) = &networks.refine {
                 page.add(page::refinement(report, &networks.prepared, &networks.network, unit)?);
             }
-            page.add(page::run(run, &page::block_sizes(mesh)?));
+            page.add(page::run(run, &page::block_sizes(mesh)?, &name));
             if let Some(caps) = caps {
                 page.add(page::terminals(caps, &networks.names, unit));
             }
@@ -405,20 +428,28 @@ impl Args {
     }
 
     /// Options that the mesh depends on, as command-line text.
-    fn typed(&self) -> String {
+    fn typed(&self, is_refined: bool) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
-        format!("mesh {}{core}{}", self.blocks.typed(), self.layers.typed())
+        format!("mesh {}{core}{}", self.blocks.typed(is_refined), self.layers.typed())
     }
 
-    /// Writes the refined network and its report, if requested. Shards do not write shared files.
-    fn tell_refined(&self, run: &PreparedRun, stop: &Stop) -> Result<(), Failure> {
-        let Some(report) = &run.networks.refine else { return Ok(()) };
-        if let Some(path) = &self.refined {
-            stop.keep();
-            super::refine::write(path, &run.networks.network, &run.origin)?;
+    /// Writes the refined network, if requested: the network as given if that is meshed.
+    fn write_refined(&self, networks: &Networks) -> Result<(), Failure> {
+        let Some(path) = &self.refined else { return Ok(()) };
+        match &networks.refined {
+            Some(refined) => super::refine::write(path, &refined.skeleton, &refined.origin),
+            None => {
+                let at: Vec<Point3> = networks.prepared.nodes.iter().map(|node| node.position).collect();
+                super::refine::write(path, &networks.prepared, &at)
+            }
         }
-        if self.common.verbose && !self.common.json {
-            log::note(&report.to_string());
+    }
+
+    /// Writes the refined network that was meshed, and its report.
+    fn tell_refined(&self, networks: &Networks) -> Result<(), Failure> {
+        self.write_refined(networks)?;
+        if let Some(report) = networks.refine.as_ref().filter(|_| self.common.verbose && !self.common.json) {
+            log::note(&report.text(&|node| networks.names.of(NodeId(node))));
         }
         Ok(())
     }
@@ -428,32 +459,37 @@ impl Args {
         plan: &MeshPlan,
         networks: &Networks,
         run: &RunReport,
-        found: Option<(&CheckReport, Option<&Fidelity>)>,
+        found: Option<&Found>,
     ) -> Result<(), Failure> {
-        let (check, fidelity) = found.unzip();
-        let fidelity = fidelity.flatten();
+        let check = found.map(|found| found.check);
+        let fidelity = found.and_then(|found| found.fidelity);
+        let changes = found.map(|found| found.changes);
+        let (attempts, kept) = found.map_or((&[][..], 0), |found| found.attempts);
+        let Networks { prepare, refine, names, .. } = networks;
+        let refine = refine.as_ref();
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            let Networks { prepare, refine, .. } = networks;
-            let output = Output { program, plan, prepare, refine: refine.as_ref(), run, check, fidelity };
+            let defects = found.map_or(&[][..], |found| found.defects);
+            let verdict = found.map(|found| found.verdict.text.as_str());
+            let output =
+                Output { program, plan, prepare, refine, run, check, fidelity, changes, attempts, defects, verdict };
             return print(true, &output, String::new);
         }
-        // Failed blocks and invalid meshes are errors, which --quiet does not suppress.
-        if !self.common.quiet
-            || !run.failed.is_empty()
-            || !run.keeps_vessels(plan.fuse)
-            || check.is_some_and(|c| !c.is_valid())
-        {
-            if self.common.verbose {
-                let all = [Some(run.to_string()), check.map(conditions), fidelity.map(ToString::to_string)];
-                log::result(&all.into_iter().flatten().collect::<String>());
-            }
-            let table = self.table();
-            let mut files: Vec<&Path> = if found.is_some() { vec![&self.output, &table] } else { Vec::new() };
-            files.extend(self.report.page().map(PathBuf::as_path));
-            let summary = Summary { run, check, fidelity, ended: ended(&files), listed: self.common.verbose };
-            log::result(&summary.to_string());
+        if self.common.quiet {
+            return Ok(());
         }
+        let name = |node| names.of(NodeId(node));
+        if self.common.verbose {
+            let all = [Some(run.text(&name)), check.map(conditions), fidelity.map(Fidelity::lengths)];
+            log::result(&all.into_iter().flatten().collect::<String>());
+        }
+        let table = self.table();
+        let mut files: Vec<&Path> = if found.is_some() { vec![&self.output, &table] } else { Vec::new() };
+        files.extend(self.report.page().map(PathBuf::as_path));
+        let (attempts, listed) = ((attempts, kept), self.common.verbose);
+        let summary =
+            Summary { run, refine, attempts, name: &name, check, fidelity, changes, ended: ended(&files), listed };
+        log::result(&summary.to_string());
         Ok(())
     }
 }

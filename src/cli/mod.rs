@@ -1,7 +1,9 @@
 //! Command line: options, progress bars, exit codes. One file per command.
 
+mod bar;
 mod blocks;
 mod check;
+mod clock;
 mod colours;
 mod common;
 mod completions;
@@ -9,6 +11,7 @@ mod config;
 mod convert;
 mod dual;
 mod exit;
+mod fidelity;
 mod flow;
 mod format;
 mod generate;
@@ -39,6 +42,7 @@ mod tetrahedralize;
 mod units;
 mod view;
 mod work;
+mod wrap;
 
 use std::process::ExitCode;
 
@@ -112,7 +116,7 @@ enum Verb {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    common::begin();
+    clock::begin();
     install_panic_note();
     LogFormat::of_words(&std::env::args_os().collect::<Vec<_>>()).set();
     let (words, config) = match config::expanded(std::env::args_os().collect(), &definition()) {
@@ -128,7 +132,8 @@ pub fn main() -> ExitCode {
             // Help and version are also reported as errors by clap.
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
             if error.use_stderr() && log::is_json() {
-                return failed(&Failure::usage(error.render().to_string()));
+                let message = error.render().to_string();
+                return failed(&Failure::usage(message.strip_prefix("error: ").unwrap_or(&message)));
             }
             return if error.print().is_ok() { exit.into() } else { Exit::BadInput.into() };
         }

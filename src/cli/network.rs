@@ -7,6 +7,7 @@ use super::hint;
 use super::numbers::above_zero;
 use super::units::Units;
 use crate::pipeline::Inlets;
+use crate::run::without_islands;
 use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote, NetworkOptions, NodeNames, read_network};
 use anastomesh_network::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
@@ -46,7 +47,7 @@ pub struct Network {
     /// Report of the cleaning.
     pub cleaned: CleanReport,
     /// Node names in the file.
-    names: NodeNames,
+    pub names: NodeNames,
     /// Roots of the trees in the file.
     roots: Vec<NodeId>,
 }
@@ -56,6 +57,14 @@ pub struct Network {
 pub struct PreparedNetwork {
     /// The prepared skeleton.
     pub skeleton: Skeleton,
+    /// Network as given, with usable radii and without islands that were to be removed.
+    pub given: Skeleton,
+    /// `given` with as many points as its shape needs.
+    pub outline: Skeleton,
+    /// Node names in the file.
+    pub names: NodeNames,
+    /// Roots of the trees in the file.
+    pub roots: Vec<NodeId>,
     /// Decisions of the reader.
     pub notes: Vec<NetworkNote>,
     /// Report of the preparation.
@@ -94,12 +103,15 @@ impl NetworkArgs {
 
     /// Reads the network and applies cures to it.
     pub fn prepared(&self, params: &PrepareParams) -> Result<PreparedNetwork, Failure> {
-        let NetworkFile { skeleton, notes, groups, .. } = self.file(params.radii)?;
+        let NetworkFile { skeleton, notes, groups, names, roots, .. } = self.file(params.radii)?;
         let prepared = prepare(&skeleton, &groups, params);
-        let prepared =
-            prepared.map_err(|e| Failure::input(format!("{}: {e}; correct the file", self.network.display())))?;
-        let Prepared { skeleton, report, .. } = prepared;
-        Ok(PreparedNetwork { skeleton, notes, report })
+        let prepared = prepared.map_err(|e| {
+            let (path, error) = (self.network.display(), hint::of_skeleton(&e, &names));
+            Failure::input(format!("{path}: {error}; correct the file"))
+        })?;
+        let Prepared { skeleton, given, outline, report } = prepared;
+        let [given, outline] = [given, outline].map(|network| without_islands(network, &report.islands));
+        Ok(PreparedNetwork { skeleton, given, outline, names, roots, notes, report })
     }
 
     /// Reads and cleans the network.

@@ -6,12 +6,15 @@ use serde::Serialize;
 
 use super::common::{Common, ended};
 use super::exit::{Exit, Failure};
+use super::fidelity::conclude;
 use super::log;
 use super::network::NetworkArgs;
 use super::numbers::fraction;
 use crate::report::prepare::row_of;
+use crate::report::verdict::Verdict;
 use anastomesh_io::network::{NetworkArray, NetworkNote, ensure_tree_writable, write_tree};
 use anastomesh_network::{PrepareParams, PrepareReport, Touching, directed};
+use anastomesh_skeleton::NodeId;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -132,8 +135,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         for note in &prepared.notes {
             log::note(&super::hint::of_note(note));
         }
-        let cures = prepared.report.text(args.common.verbose);
+        let cures = prepared.report.text(args.common.verbose, &|node| prepared.names.of(NodeId(node)));
         log::result(&format!("{cures}{}{}", row_of(&prepared.report), ended(&[&args.output]).rows(&[])));
     }
-    Ok(Exit::Fine)
+    let done = if prepared.report.changed() { "repaired" } else { "no repair needed" };
+    Ok(conclude(&args.common, &Verdict::good(done)))
 }

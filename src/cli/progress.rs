@@ -8,8 +8,10 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::clock::elapsed;
 use super::stop::Stop;
-use super::{colours, log};
+use super::{bar, colours, log};
+use crate::pipeline::StageTime;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::units::{grouped, seconds_of};
 
@@ -42,6 +44,7 @@ pub fn stage_bar(stage: &'static str, steps: u64) -> ProgressBar {
         // Without steps, a timer moves the spinner.
         bar.enable_steady_tick(ALIVE);
     }
+    super::bar::show(&bar);
     bar
 }
 
@@ -129,14 +132,48 @@ pub struct Bars {
     quiet: bool,
     lines: Option<Lines>,
     current: Mutex<Option<(Stage, ProgressBar)>>,
+    times: Mutex<Times>,
     stop: Stop,
+}
+
+/// Wall time of the stages of all passes.
+#[derive(Debug, Default)]
+struct Times {
+    spent: Vec<(Stage, Duration)>,
+    current: Option<(Stage, Instant)>,
+}
+
+impl Times {
+    fn add(&mut self, stage: Stage, time: Duration) {
+        match self.spent.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, sum)) => *sum += time,
+            None => self.spent.push((stage, time)),
+        }
+    }
+
+    /// Records a progress report: a stage lasts until its end or the begin of another.
+    fn at(&mut self, stage: Stage, is_over: bool) {
+        if let Some((at, since)) = self.current
+            && (at != stage || is_over)
+        {
+            self.add(at, since.elapsed());
+            self.current = None;
+        }
+        if self.current.is_none() && !is_over {
+            self.current = Some((stage, Instant::now()));
+        }
+    }
 }
 
 impl Bars {
     /// Creates the bars; `quiet` also suppresses notes.
     pub fn new(quiet: bool, told: Option<ProgressFormat>, stop: Stop) -> Self {
         let lines = Lines::asked_for(quiet, told);
-        Self { shown: shows_bars(quiet, told), quiet, lines, current: Mutex::new(None), stop }
+        let mut times = Times::default();
+        // Reading and repairs come before the bars.
+        times.add(Stage::Read, elapsed());
+        let (current, times) = (Mutex::new(None), Mutex::new(times));
+        Self { shown: shows_bars(quiet, told), quiet, lines, current, times, stop }
     }
 
     /// Runs a stage without steps.
@@ -147,8 +184,11 @@ impl Bars {
         result
     }
 
-    fn current(&self) -> Option<ProgressBar> {
-        self.current.lock().ok()?.as_ref().map(|(_, bar)| bar.clone())
+    /// Wall time of each stage so far, over all passes.
+    pub fn stages(&self) -> Vec<StageTime> {
+        let Ok(times) = self.times.lock() else { return Vec::new() };
+        let time = |&(stage, time): &(Stage, Duration)| StageTime { stage: stage.name(), seconds: time.as_secs_f64() };
+        times.spent.iter().map(time).collect()
     }
 }
 
@@ -157,8 +197,18 @@ impl Progress for Bars {
         if let Some(lines) = &self.lines {
             lines.tell(stage.name(), done, total);
         }
-        let Ok(mut current) = self.current.lock() else { return };
         let is_over = done > 0 && done == total;
+        if let Ok(mut times) = self.times.lock() {
+            times.at(stage, is_over);
+        }
+        let Ok(mut current) = self.current.lock() else { return };
+        if self.stop.is_asked() {
+            // The bar of a run that stops stays cleared.
+            if current.take().is_some() {
+                bar::clear();
+            }
+            return;
+        }
         if !self.shown || (is_over && current.is_none()) {
             return;
         }
@@ -169,8 +219,8 @@ impl Progress for Bars {
             // Threads may report out of order.
             bar.set_position(done.max(bar.position()));
         }
-        if is_over && let Some((_, bar)) = current.take() {
-            bar.finish_and_clear();
+        if is_over && current.take().is_some() {
+            bar::clear();
         }
     }
 
@@ -178,10 +228,7 @@ impl Progress for Bars {
         if self.quiet {
             return;
         }
-        match self.current() {
-            Some(bar) => bar.suspend(|| log::note(message)),
-            None => log::note(message),
-        }
+        log::note(message);
     }
 
     fn is_cancelled(&self) -> bool {

@@ -6,23 +6,29 @@ use serde::Serialize;
 
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::fidelity::{FidelityArgs, conclude};
 use super::log;
-use super::network::NetworkArgs;
+use super::network::{NetworkArgs, PreparedNetwork};
 use super::numbers::number;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::run::{refine_failure, remarks};
 use super::stop::Stop;
+use crate::fidelity::{Changes, Compared, Fidelity, Repairs};
+use crate::pipeline::RunReport;
 use crate::report::page;
 use crate::report::plot::svg;
 use crate::report::refine::{brief, csv, panels};
+use crate::report::summary::fidelity_rows;
+use crate::report::verdict::Verdict;
+use crate::run::{Defect, Limits};
 use anastomesh_io::network::{ensure_network_writable, refinement_arrays, write_network};
 use anastomesh_io::write_text;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_network::PrepareReport;
-use anastomesh_network::{Crowded, Freedom, Metric, RefineParams, RefineReport, Residual, refine};
-use anastomesh_skeleton::Skeleton;
+use anastomesh_network::{Crowded, Freedom, Metric, RefineParams, RefineReport, Refined, Residual, refine};
+use anastomesh_skeleton::{NodeId, Skeleton};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -47,6 +53,8 @@ pub struct Args {
     /// Plot displacement, barrier potential, lengths and angles over the iterations
     #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    fidelity: FidelityArgs,
     #[command(flatten)]
     report: ReportArgs,
     #[command(flatten)]
@@ -159,16 +167,21 @@ struct Output<'a> {
     parameters: &'a RefineParams,
     prepare: &'a PrepareReport,
     report: &'a RefineReport,
+    fidelity: &'a Fidelity,
+    changes: &'a Changes,
+    defects: &'a [Defect],
+    verdict: &'a str,
 }
 
 /// Refines a network and writes it.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     ensure_network_writable(&args.output).map_err(|e| Failure::input(e.to_string()))?;
     args.report.ensure_writable()?;
+    let limits = args.fidelity.limits()?;
     let pool = thread_pool(args.common.threads)?;
     let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
     if !args.common.quiet {
-        for remark in remarks(&network.notes, &network.report, args.common.verbose) {
+        for remark in remarks(&network.notes, &network.report, &network.names, args.common.verbose) {
             log::note(&remark);
         }
     }
@@ -184,24 +197,42 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             write_text(path, &text(report)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         }
     }
+    let name = |node| network.names.of(NodeId(node));
+    let (fidelity, changes, defects) = pool.install(|| compared(&network, &refined, limits));
+    let ensures = params.residual == Residual::Shrink;
+    let verdict = Verdict::of_refinement(report, ensures, &args.fidelity.refused(&defects), &name);
     let unit = page::LengthUnit(args.network.units.map(|units| units.names()[1]));
     pool.install(|| {
-        args.report.write(&args.output, Some(page::overlaps_left(report)), &params, |page| {
+        args.report.write(&args.output, Some(page::of_refinement(&verdict)), &params, |page| {
             page.add(page::refinement(report, &network.skeleton, &refined.skeleton, unit)?);
             Ok(())
         })
     })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        print(true, &Output { program, parameters: &params, prepare: &network.report, report }, String::new)?;
+        let (parameters, prepare, verdict) = (&params, &network.report, &*verdict.text);
+        let (fidelity, changes, defects) = (&fidelity, &changes, &*defects);
+        let output = Output { program, parameters, prepare, report, fidelity, changes, defects, verdict };
+        print(true, &output, String::new)?;
     } else if !args.common.quiet {
-        let table = if args.common.verbose { report.to_string() } else { String::new() };
+        let table = if args.common.verbose { report.text(&name) } else { String::new() };
         let files = [Some(&args.output), args.metrics.as_ref(), args.plot.as_ref(), args.report.page()];
         let files: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).collect();
-        log::result(&format!("{table}{}", brief(report, &ended(&files))));
+        let rows = fidelity_rows(Some(&fidelity), Some(&changes), &name);
+        log::result(&format!("{table}{}", brief(report, &rows, &name, &ended(&files))));
     }
-    let gate = params.residual == Residual::Shrink && report.residual.left > 0;
-    Ok(if gate { Exit::GateNotMet } else { Exit::Fine })
+    args.fidelity.tell(&args.common, &defects, &RunReport::default(), &name);
+    Ok(conclude(&args.common, &verdict))
+}
+
+/// Compares a refined network with the given one.
+fn compared(network: &PreparedNetwork, refined: &Refined, limits: Limits) -> (Fidelity, Changes, Vec<Defect>) {
+    let PreparedNetwork { given, outline, skeleton, report: prepare, .. } = network;
+    let repairs = Repairs { prepare, refine: Some(&refined.report) };
+    let fidelity = Fidelity::of_network(Compared { given, outline, meshed: &refined.skeleton });
+    let changes = Changes::of(given, skeleton, &refined.skeleton, repairs, &[]);
+    let defects = limits.unfaithful(given, repairs, &fidelity, &changes);
+    (fidelity, changes, defects)
 }
 
 /// Writes a refined network.

@@ -7,15 +7,16 @@ use super::hint;
 use super::stop::NOTHING_KEPT;
 use crate::pipeline::{FlowError, RunError};
 use crate::run::MeshingError;
-use anastomesh_io::network::NetworkNote;
+use anastomesh_io::network::{NetworkNote, NodeNames};
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineError;
+use anastomesh_skeleton::NodeId;
 
 /// Text lines on reading and preparation; with `all`, in full.
-pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, all: bool) -> Vec<String> {
+pub fn remarks(notes: &[NetworkNote], report: &PrepareReport, names: &NodeNames, all: bool) -> Vec<String> {
     let mut lines: Vec<String> = notes.iter().map(hint::of_note).collect();
     if report.changed() {
-        lines.extend(report.text(all).lines().map(ToString::to_string));
+        lines.extend(report.text(all, &|node| names.of(NodeId(node))).lines().map(ToString::to_string));
     }
     lines
 }

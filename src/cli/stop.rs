@@ -11,6 +11,7 @@ use signal_hook::flag;
 #[cfg(unix)]
 use signal_hook::low_level;
 
+use super::bar;
 use super::exit::{Exit, Failure};
 use super::log;
 
@@ -75,11 +76,13 @@ impl Stop {
             if !asked.load(Ordering::SeqCst) && heard.read_exact(&mut [0]).is_err() {
                 return;
             }
+            bar::clear();
             if !quiet {
-                log::note("anastomesh: stopping; press Ctrl-C again to end immediately");
+                log::note("stopping; press Ctrl-C again to end immediately");
             }
             std::thread::sleep(PATIENCE);
             if !keeps.load(Ordering::SeqCst) {
+                bar::clear();
                 log::error(NOTHING_KEPT);
                 low_level::exit(Exit::Stopped.code().into());
             }

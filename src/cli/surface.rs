@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::blocks::BlockArgs;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
+use super::fidelity::conclude;
 use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;
@@ -15,18 +16,19 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::pipeline::{Clock, Estimate, MeshPlan, RunReport};
+use crate::pipeline::{Estimate, MeshPlan, RunReport};
 use crate::report::summary::Summary;
-use crate::run::{MeshingError, Networks, PreparedRun, Run};
+use crate::report::verdict::{Verdict, missing};
+use crate::run::{Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::surface::{ensure_boundary_writable, write_boundary_watched};
 use anastomesh_io::volume::MeshNotes;
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
-use anastomesh_mesh::units::counted;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
+use anastomesh_skeleton::NodeId;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -69,12 +71,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let prepared = pool.install(|| args.prepared(plan))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
-    for remark in remarks(&prepared.notes, &prepared.networks.prepare, args.common.verbose) {
+    let Networks { prepare, names, .. } = &prepared.networks;
+    for remark in remarks(&prepared.notes, prepare, names, args.common.verbose) {
         bars.note(&remark);
     }
     let prepared = pool.install(|| prepared.refined(None, &bars)).map_err(|e| args.explain_alone(e))?;
     if let Some(report) = prepared.networks.refine.as_ref().filter(|_| args.common.verbose && !args.common.json) {
-        log::note(&report.to_string());
+        log::note(&report.text(&|node| prepared.networks.names.of(NodeId(node))));
     }
     stop.keep();
     pool.install(|| args.make(prepared, &bars))
@@ -99,41 +102,40 @@ impl Args {
         let mut made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, plan))?;
         let notes = MeshNotes {
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
-            options: format!("surface {}", self.blocks.typed()),
+            options: format!("surface {}", self.blocks.typed(true)),
             ..MeshNotes::default()
         };
         let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
         };
-        let mut clock = Clock::default();
         let write = || {
             let surface = BoundarySurface::new(&made.mesh, faces).map_err(|e| failed(&e))?;
             write_boundary_watched(&self.output, &surface, &notes, bars).map_err(|e| failed(&e))
         };
-        clock.time(bars, Stage::Write, 0, write)?;
-        made.report.stages.extend(clock.stages());
-        self.print(plan, &made.networks, &made.report, Some(&made.check))?;
-        let invalid = !made.is_valid();
-        self.blocks.advise(&made.report, invalid);
-        Ok(match () {
-            () if !made.report.failed.is_empty() => Exit::StageFailed,
-            () if invalid => Exit::GateNotMet,
-            () => Exit::Fine,
-        })
+        bars.during(Stage::Write, write)?;
+        made.report.stages = bars.stages();
+        self.print(plan, &made.networks, &made.report, Some(&made))?;
+        if !self.common.quiet {
+            self.blocks.advise(&made.report, !made.is_valid());
+        }
+        let defects: Vec<&Defect> = made.defects.iter().collect();
+        let name = |node| made.networks.names.of(NodeId(node));
+        let exit = conclude(&self.common, &Verdict::of_mesh(&made.check, &made.report, &defects, &name));
+        Ok(if made.report.failed.is_empty() { exit } else { Exit::StageFailed })
     }
 
     /// Failure of a run, after its report.
     fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
-        if let Err(failure) = self.print(plan, &networks, &report, None) {
+        if let Err(failure) = self.print::<()>(plan, &networks, &report, None) {
             return failure;
         }
-        self.blocks.advise(&report, true);
-        Failure::stage(format!(
-            "{} without a valid surface (listed above); --keep-going writes the rest",
-            counted(report.failed.len(), "block")
-        ))
+        if !self.common.quiet {
+            self.blocks.advise(&report, true);
+        }
+        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
+        Failure::stage(format!("{missing}; --keep-going writes the rest"))
     }
 
     /// Failure of a run before its blocks.
@@ -141,30 +143,41 @@ impl Args {
         failure(error, &self.network.network, || Failure::stopped(NOTHING_KEPT))
     }
 
-    fn print(
+    fn print<M>(
         &self,
         plan: &MeshPlan,
         networks: &Networks,
         run: &RunReport,
-        check: Option<&CheckReport>,
+        made: Option<&NetworkMesh<M>>,
     ) -> Result<(), Failure> {
+        let check = made.map(|made| &made.check);
+        let Networks { prepare, refine, names, .. } = networks;
+        let refine = refine.as_ref();
         if self.common.json {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-            let Networks { prepare, refine, .. } = networks;
-            return print(true, &Output { program, plan, prepare, refine: refine.as_ref(), run, check }, String::new);
+            return print(true, &Output { program, plan, prepare, refine, run, check }, String::new);
         }
-        // Failed blocks and invalid surfaces are errors, which --quiet does not suppress.
-        let is_wrong = !run.failed.is_empty() || !run.keeps_vessels(plan.fuse) || check.is_some_and(|c| !c.is_valid());
-        if !self.common.quiet || is_wrong {
-            if self.common.verbose {
-                let all = [Some(run.to_string()), check.map(conditions)];
-                log::result(&all.into_iter().flatten().collect::<String>());
-            }
-            let files: &[&Path] = if check.is_some() { &[&self.output] } else { &[] };
-            log::result(
-                &Summary { run, check, fidelity: None, ended: ended(files), listed: self.common.verbose }.to_string(),
-            );
+        if self.common.quiet {
+            return Ok(());
         }
+        let name = |node| names.of(NodeId(node));
+        if self.common.verbose {
+            let all = [Some(run.text(&name)), check.map(conditions)];
+            log::result(&all.into_iter().flatten().collect::<String>());
+        }
+        let files: &[&Path] = if check.is_some() { &[&self.output] } else { &[] };
+        let summary = Summary {
+            run,
+            refine,
+            attempts: made.map_or((&[], 0), |made| (&made.attempts, made.kept)),
+            name: &name,
+            check,
+            fidelity: None,
+            changes: made.map(|made| &made.changes),
+            ended: ended(files),
+            listed: self.common.verbose,
+        };
+        log::result(&summary.to_string());
         Ok(())
     }
 }

@@ -17,8 +17,10 @@ const MOST_KEPT: usize = 10_000;
 /// Place of the given axis that is far from the meshed axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Displaced {
-    /// Nodes of the given edge, as in the file.
+    /// Nodes of the given edge, as indices in the file.
     pub given: [u32; 2],
+    /// The nearer one of them.
+    pub node: u32,
     /// Position of the place.
     pub place: [f64; 3],
     /// Nodes of the nearest meshed edge.
@@ -33,6 +35,8 @@ pub struct Displacements {
     /// Distribution over the axis, in radii of the given vessel.
     #[serde(flatten)]
     pub spread: Spread,
+    /// Place with the largest displacement; `None` without vessels.
+    pub place: Option<Displaced>,
     /// Length of the given axis.
     pub given_length: f64,
     /// Length of the meshed axis.
@@ -47,14 +51,19 @@ const AT_A_TIME: usize = 1 << 14;
 
 impl Displacements {
     /// Measures the displacements; `tubes` are those of the meshed network.
-    pub(super) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
+    pub(crate) fn of(given: &Skeleton, meshed: &Skeleton, tubes: &Tubes) -> Self {
         let edges: Vec<EdgeId> = given.edge_ids().collect();
         let (mut all, mut furthest) = (Vec::new(), Vec::new());
+        let mut place: Option<Displaced> = None;
         for some in edges.chunks(AT_A_TIME) {
             let look = |&edge| along(given, edge, meshed, tubes);
             let found: Vec<(Vec<f32>, Option<Displaced>)> = some.par_iter().with_min_len(64).map(look).collect();
             for (values, worst) in found {
                 all.extend(values);
+                // Of equal values the first is kept.
+                if let Some(worst) = worst.filter(|w| place.is_none_or(|place| w.radii > place.radii)) {
+                    place = Some(worst);
+                }
                 furthest.extend(worst.filter(|d| d.radii > FAR));
             }
             // Stable sort: of equal values the earlier comes first.
@@ -63,6 +72,7 @@ impl Displacements {
         }
         Self {
             spread: Spread::of(all),
+            place,
             given_length: edges.iter().map(|&e| given.length(e)).sum(),
             meshed_length: tubes.list.iter().map(anastomesh_mesh::geometry::Tube::length).sum(),
             furthest,
@@ -89,7 +99,8 @@ fn along(given: &Skeleton, edge: EdgeId, meshed: &Skeleton, tubes: &Tubes) -> (V
         let radii = off(near.distance, near.radius) / radius;
         if worst.is_none_or(|w| radii > w.radii) {
             let beside = meshed.edge(near.edge).nodes.map(|n| meshed.node(n).original);
-            worst = Some(Displaced { given: ends.map(|n| n.original), place: place.into(), meshed: beside, radii });
+            let (given, node) = (ends.map(|n| n.original), ends[usize::from(t > 0.5)].original);
+            worst = Some(Displaced { given, node, place: place.into(), meshed: beside, radii });
         }
         radii as f32
     });

@@ -5,7 +5,9 @@
 
 mod along;
 mod axis;
+mod changes;
 mod lumen;
+mod radius;
 mod spread;
 mod text;
 mod tubes;
@@ -18,7 +20,10 @@ use std::io;
 
 pub use along::{Along, Bin};
 pub use axis::{Displaced, Displacements};
+pub use changes::{Change, Changes, Repairs};
+pub use radius::{RadiusReference, SectionErrors};
 pub use spread::Spread;
+pub(crate) use text::share;
 pub use tubes::Tubes;
 
 /// Fidelity figures of a mesh.
@@ -29,6 +34,8 @@ pub struct Fidelity {
     pub axis: Displacements,
     /// Relative distance of the wall from the given tubes: |d − r| / r at points of the wall.
     pub wall: Spread,
+    /// Radius error of the sections.
+    pub radius: SectionErrors,
     /// Volume of the given lumen: the union of its tubes, by sampling.
     pub lumen: f64,
     /// Volume of the mesh.
@@ -70,7 +77,24 @@ impl Fidelity {
             drop(outlined);
             Tubes::of(meshed)
         };
-        Ok(Self { axis: Displacements::of(given, meshed, &tubes), wall, lumen, volume })
+        let axis = Displacements::of(given, meshed, &tubes);
+        let mut found = Self { axis, wall, lumen, volume, ..Self::default() };
+        found.radius = if found.axis.spread.p99 > MOVED {
+            SectionErrors { spread: wall::spread(&tubes, mesh)?, of: RadiusReference::Moved }
+        } else {
+            SectionErrors { spread: found.wall, of: RadiusReference::Given }
+        };
+        Ok(found)
+    }
+
+    /// Compares a network that replaces the given one, without a mesh: the volume is that of its lumen.
+    pub(crate) fn of_network(networks: Compared) -> Self {
+        let Compared { given, outline, meshed } = networks;
+        let (lumen, tubes) = (lumen_of(outline), Tubes::of(meshed));
+        let volume = lumen::volume(meshed, &tubes);
+        let axis = Displacements::of(given, meshed, &tubes);
+        let radius = SectionErrors { spread: radius::change(given, &tubes), of: RadiusReference::Network };
+        Self { axis, radius, lumen, volume, wall: Spread::default() }
     }
 
     /// True if vessels were moved (by a refinement): the wall's distance from the given tubes is then no error.
@@ -78,7 +102,7 @@ impl Fidelity {
         self.axis.spread.median > MOVED
     }
 
-    /// Relative excess of the mesh volume over the given lumen.
+    /// Relative excess of the mesh volume over the given lumen; 0 if the given network has no volume.
     pub fn swelling(&self) -> f64 {
         if self.lumen > 0.0 { self.volume / self.lumen - 1.0 } else { 0.0 }
     }

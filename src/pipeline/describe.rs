@@ -8,7 +8,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{BlockResult, Workshop};
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, RunReport, ThinBlock};
+use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, RunReport, ThinBlock};
 use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
@@ -16,39 +16,14 @@ use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
-/// Maximum number of listed overlaps.
-const LISTED: usize = 3;
-
-/// Prints overlapping vessels, deepest first, each pair of vessels once.
+/// Reports the number of overlaps; the summary lists the deepest.
 pub(super) fn announce(report: &RunReport, observer: &dyn Progress) {
-    let mut places: Vec<&Meeting> = report.overlaps.iter().collect();
-    let depth = |m: &Meeting| m.distance / m.radii;
-    let vessels = |m: &Meeting| [m.vessels[0].min(m.vessels[1]), m.vessels[0].max(m.vessels[1])];
-    places.sort_by(|a, b| vessels(a).cmp(&vessels(b)).then(depth(a).total_cmp(&depth(b))));
-    places.dedup_by_key(|m| vessels(m));
-    // A stable sort: the vessels of lower numbers come first among equals.
-    places.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-    if places.is_empty() {
-        return;
+    let places = report.overlapping_places().len();
+    if places > 0 {
+        let [places, pairs] =
+            [(places, "place"), (report.overlaps.len(), "edge pair")].map(|(n, what)| counted(n, what));
+        observer.note(&format!("vessels overlap at {places} ({pairs}); the summary lists the deepest overlaps"));
     }
-    observer.note(&format!(
-        "vessels overlap at {} ({}, listed in the report); deepest overlaps (edges by their nodes):",
-        counted(places.len(), "place"),
-        counted(report.overlaps.len(), "edge pair")
-    ));
-    for m in places.iter().take(LISTED) {
-        let [[a, b], [c, d]] = m.edges;
-        observer.note(&format!(
-            "  {a}-{b} and {c}-{d}: distance {}, sum of radii {}",
-            number(m.distance),
-            number(m.radii)
-        ));
-    }
-}
-
-/// Four digits, however small or large.
-fn number(x: f64) -> String {
-    if (1e-3..1e6).contains(&x.abs()) || x == 0.0 { format!("{x:.4}") } else { format!("{x:.3e}") }
 }
 
 /// Data of all clusters that determine the expected topology.

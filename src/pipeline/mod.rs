@@ -45,6 +45,8 @@ pub use inlets::{Inlet, InletReason, Inlets, NoTerminal};
 pub use once::replay;
 pub use outlets::{OutletKind, OutletPlan, OutletSplit, Reference};
 pub use plan::{JointStyle, MeshPlan, PlanError};
+#[cfg(feature = "cli")]
+pub use report::named;
 pub use report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, MeshSize, Retry, RunReport, ThinBlock};
 pub use run::{Meshed, Stored, mesh_into, mesh_network};
 pub(crate) use run::{mesh_in_memory, mesh_shared};

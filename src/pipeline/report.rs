@@ -2,6 +2,8 @@
 
 mod text;
 
+pub use text::named;
+
 use super::timing::{BlockTimes, StageTime};
 use crate::block::{Astray, ThinLayers};
 use serde::Serialize;
@@ -118,6 +120,18 @@ impl RunReport {
     /// Terminals without a cap, as indices in the file that was read: those that were let go, and those for which a block failed.
     pub fn uncapped(&self) -> impl Iterator<Item = u32> {
         self.fused.iter().flat_map(|f| &f.uncapped).chain(self.failed.iter().flat_map(|f| &f.uncapped)).copied()
+    }
+
+    /// Deepest overlap of each pair of vessels, the deepest first.
+    pub fn overlapping_places(&self) -> Vec<&Meeting> {
+        let mut places: Vec<&Meeting> = self.overlaps.iter().collect();
+        let depth = |m: &Meeting| m.distance / m.radii;
+        let vessels = |m: &Meeting| [m.vessels[0].min(m.vessels[1]), m.vessels[0].max(m.vessels[1])];
+        places.sort_by(|a, b| vessels(a).cmp(&vessels(b)).then(depth(a).total_cmp(&depth(b))));
+        places.dedup_by_key(|m| vessels(m));
+        // A stable sort: the vessels of lower numbers come first among equals.
+        places.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+        places
     }
 
     /// True if the walls contain the vessels: every axis within, and, unless they were to fuse, vessels that are apart as two

@@ -2,10 +2,11 @@
 
 use crate::pipeline::Inlet;
 use anastomesh_mesh::geometry::Aabb;
-use anastomesh_mesh::units::{counted, digits, grouped, percent};
+use anastomesh_mesh::units::{counted, digits, grouped, number, percent};
+use anastomesh_network::NameOf;
 use anastomesh_skeleton::{CleanReport, CrowdedTerminals, Metrics, Overlaps, Share, Skeleton};
 use serde::Serialize;
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 /// Maximum number of overlaps in the text; the JSON form lists all.
 const LISTED: usize = 10;
@@ -56,16 +57,35 @@ pub enum UnitGuess {
     Micrometres,
 }
 
+/// Plausible median radius of vessels, from capillaries to the aorta, in metres.
+const MEDIAN_RADIUS: [f64; 2] = [1.5e-6, 0.015];
+/// Maximum radius of a vessel, in metres.
+const MAX_RADIUS: f64 = 0.02;
+/// Maximum extent of a network, in metres.
+const MAX_EXTENT: f64 = 2.0;
+
 impl UnitGuess {
-    /// Estimate from largest radius and extent: no vessel is thicker than 20 mm, no network larger than 2 m.
-    fn of(largest_radius: f64, extent: f64) -> Self {
-        if largest_radius > 20.0 || extent > 2000.0 {
-            Self::Micrometres
-        } else if largest_radius < 0.02 && extent < 2.0 {
-            Self::Metres
-        } else {
-            Self::Millimetres
+    const ALL: [Self; 3] = [Self::Micrometres, Self::Millimetres, Self::Metres];
+
+    /// Number of metres, name and option value.
+    fn unit(self) -> (f64, &'static str, &'static str) {
+        match self {
+            Self::Metres => (1.0, "m", "m"),
+            Self::Millimetres => (1e-3, "mm", "mm"),
+            Self::Micrometres => (1e-6, "µm", "um"),
         }
+    }
+
+    /// Units in which the sizes of a network are those of vessels.
+    fn plausible(radius: &Quartiles, extent: f64) -> Vec<Self> {
+        let fits = |unit: &Self| {
+            let (metres, ..) = unit.unit();
+            let median = radius.median * metres;
+            (MEDIAN_RADIUS[0]..=MEDIAN_RADIUS[1]).contains(&median)
+                && radius.max * metres <= MAX_RADIUS
+                && extent * metres <= MAX_EXTENT
+        };
+        Self::ALL.into_iter().filter(fits).collect()
     }
 }
 
@@ -130,8 +150,14 @@ pub struct NetworkInfo {
     pub inlets: Vec<Inlet>,
     /// Lowest and highest coordinates of the nodes.
     pub bounding_box: [[f64; 3]; 2],
-    /// Unit of length estimated from the sizes.
-    pub unit_guess: UnitGuess,
+    /// Units of length in which the sizes are those of vessels.
+    pub plausible_units: Vec<UnitGuess>,
+    /// Unit of length stated by the caller.
+    pub unit: Option<String>,
+    /// Nodes without a usable radius in the file; the other fields describe the network with these filled.
+    pub nodes_without_radius: usize,
+    /// True if vessels are polylines, so that `mesh` prepares the network first.
+    pub measured: bool,
     /// Suitability for meshing.
     pub metrics: Metrics,
     /// Overlapping vessels.
@@ -179,21 +205,24 @@ impl NetworkInfo {
             total_length: lengths.iter().sum(),
             edge_length: Quartiles::of(lengths),
             bounding_box: [aabb.min.into(), aabb.max.into()],
-            unit_guess: UnitGuess::of(radius.max, aabb.diagonal()),
+            plausible_units: UnitGuess::plausible(&radius, aabb.diagonal()),
+            unit: None,
+            nodes_without_radius: 0,
+            measured: skeleton.is_measured(),
             metrics,
             overlaps: skeleton.overlaps(&adjacency),
             crowded_terminals: skeleton.crowded_terminals(&adjacency),
         }
     }
 
-    fn write_cleaning(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn write_cleaning(&self, f: &mut String) -> fmt::Result {
         for change in self.cleaned.changes() {
             writeln!(f, "cleaned: {change}")?;
         }
         Ok(())
     }
 
-    fn write_metrics(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn write_metrics(&self, f: &mut String) -> fmt::Result {
         let m = &self.metrics;
         let percent = |share: Share| percent(share.percent() / 100.0);
         writeln!(f, "barrier potential: {}", digits(m.barrier))?;
@@ -210,12 +239,12 @@ impl NetworkInfo {
         writeln!(f, "inner branches long enough for a cut: {} of {}", grouped(m.cuttable.count), grouped(m.cuttable.of))
     }
 
-    fn write_overlaps(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn write_overlaps(&self, name: NameOf, f: &mut String) -> fmt::Result {
         let all = &self.overlaps.pairs;
         let beside = all.iter().filter(|o| o.shares_node()).count();
         writeln!(f, "overlaps: {}, of which {} share a node", counted(all.len(), "edge pair"), grouped(beside))?;
         for o in all.iter().take(LISTED) {
-            let [[a, b], [c, d]] = o.nodes.map(|ends| ends.map(|n| n.0));
+            let [[a, b], [c, d]] = o.nodes.map(|ends| ends.map(|n| name(n.0)));
             let at = <[f64; 3]>::from(nalgebra::center(&o.points[0], &o.points[1])).map(digits).join(" ");
             let (distance, radii) = (digits(o.distance), digits(o.radii));
             writeln!(f, "  {a}-{b} and {c}-{d}: distance {distance}, sum of radii {radii}, at {at}")?;
@@ -234,11 +263,18 @@ impl NetworkInfo {
         Ok(())
     }
 
-    fn write_crowded(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn write_crowded(&self, name: NameOf, f: &mut String) -> fmt::Result {
         let all = &self.crowded_terminals;
         writeln!(f, "terminals closer than the sum of their radii: {}", counted(all.len(), "pair"))?;
         for CrowdedTerminals { nodes: [a, b], distance, radii } in all.iter().take(LISTED) {
-            writeln!(f, "  {} and {}: distance {}, sum of radii {}", a.0, b.0, digits(*distance), digits(*radii))?;
+            writeln!(
+                f,
+                "  {} and {}: distance {}, sum of radii {}",
+                name(a.0),
+                name(b.0),
+                digits(*distance),
+                digits(*radii)
+            )?;
         }
         if all.len() > LISTED {
             writeln!(f, "  and {} more (--json lists all)", grouped(all.len() - LISTED))?;
@@ -247,14 +283,61 @@ impl NetworkInfo {
     }
 }
 
+/// Text report; nodes are named by their index in the cleaned network.
 impl fmt::Display for NetworkInfo {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.text(&|node| node.to_string()))
+    }
+}
+
+impl NetworkInfo {
+    /// Text report. `name` names a node, given by its index in the cleaned network.
+    pub fn text(&self, name: NameOf) -> String {
+        let mut out = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write(name, &mut out);
+        out
+    }
+
+    fn write_unit(&self, f: &mut String) -> fmt::Result {
+        if let Some(unit) = &self.unit {
+            return writeln!(f, "unit: {unit} (--units)");
+        }
+        let as_unit = |guess: &UnitGuess| {
+            let (_, symbol, option) = guess.unit();
+            format!("{guess} (median radius {} {symbol}, --units {option})", number(self.radius.median))
+        };
+        let units: Vec<String> = self.plausible_units.iter().map(as_unit).collect();
+        match &units[..] {
+            [] => writeln!(f, "unit: not in the file; no usual unit gives sizes of vessels; check the radii"),
+            [unit] => writeln!(f, "unit: not in the file; the sizes are those of vessels in {unit}"),
+            units => writeln!(f, "unit: not in the file; the sizes are those of vessels in {}", units.join(" or ")),
+        }
+    }
+
+    fn write_repairs(&self, f: &mut String) -> fmt::Result {
+        if self.nodes_without_radius > 0 {
+            let nodes = counted(self.nodes_without_radius, "node");
+            let them = if self.nodes_without_radius == 1 { "it from its" } else { "them from their" };
+            writeln!(f, "repairs: {nodes} with a missing or implausible radius; `mesh` fills {them} neighbours")?;
+        }
+        if self.measured {
+            writeln!(
+                f,
+                "repairs: vessels are polylines; `mesh` repairs the network first, `prepare` shows the repairs"
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write(&self, name: NameOf, f: &mut String) -> fmt::Result {
         for note in &self.notes {
             writeln!(f, "read: {note}")?;
         }
         self.write_cleaning(f)?;
         writeln!(f, "nodes: {} ({})", grouped(self.nodes), counted(self.terminals, "terminal"))?;
-        writeln!(f, "edges: {} in {} branches", grouped(self.edges), grouped(self.branches))?;
+        let noun = if self.branches == 1 { "branch" } else { "branches" };
+        writeln!(f, "edges: {} in {} {noun}", grouped(self.edges), grouped(self.branches))?;
         let [components, largest] = [self.components, self.largest_component].map(grouped);
         writeln!(f, "components: {components} (the largest has {largest} nodes)")?;
         writeln!(f, "loops: {}", grouped(self.loops))?;
@@ -273,10 +356,11 @@ impl fmt::Display for NetworkInfo {
         writeln!(f, "total length: {}", digits(self.total_length))?;
         let [low, high] = self.bounding_box.map(|p| p.map(digits).join(" "));
         writeln!(f, "bounding box: {low} to {high}")?;
-        writeln!(f, "unit: probably {} (estimated from the largest radius and the extent)", self.unit_guess)?;
+        self.write_unit(f)?;
+        self.write_repairs(f)?;
         self.write_metrics(f)?;
-        self.write_overlaps(f)?;
-        self.write_crowded(f)
+        self.write_overlaps(name, f)?;
+        self.write_crowded(name, f)
     }
 }
 
@@ -308,10 +392,17 @@ mod tests {
         assert_eq!(info.valences, [0, 3, 3, 1]);
         assert_eq!(info.edges_shorter_than_radius, 1);
         assert_eq!(info.bounding_box, [[0.0, -9.0, 0.0], [20.0, 9.0, 1.0]]);
-        assert_eq!(info.unit_guess, UnitGuess::Millimetres);
+        // A radius of 2 is that of a capillary in micrometres, and of an artery in millimetres.
+        assert_eq!(info.plausible_units, [UnitGuess::Micrometres, UnitGuess::Millimetres]);
         assert_eq!(info.overlaps.pairs.iter().filter(|o| !o.shares_node()).count(), 2);
         let text = info.to_string();
         assert!(text.contains("read: a note\ncleaned: 1 repeated edge removed\nnodes: 7 (3 terminals)\n"), "{text}");
+        let unit = "unit: not in the file; the sizes are those of vessels in micrometres (median radius 2 µm, --units um) or \
+                    millimetres (median radius 2 mm, --units mm)\n";
+        assert!(text.contains(unit), "{text}");
+        let named = NetworkInfo { nodes_without_radius: 3, ..info.clone() }.text(&|node| format!("n{node}"));
+        assert!(named.contains("repairs: 3 nodes with a missing or implausible radius"), "{named}");
+        assert!(named.contains("  n0-n1 and n5-n6: ") || named.contains("  n1-n2 and n5-n6: "), "{named}");
         let json = serde_json::to_value(&info).unwrap();
         assert_eq!(json["loops"], 1);
         assert_eq!(json["overlaps"]["pairs"][0]["points"][0].as_array().map(Vec::len), Some(3));

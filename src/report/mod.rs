@@ -13,3 +13,4 @@ pub mod refine;
 pub mod rows;
 pub mod summary;
 pub mod tetrahedralize;
+pub mod verdict;

@@ -5,13 +5,14 @@ use std::fmt::Write as _;
 use super::plot::{Panel, Series};
 use super::rows::{Ended, row};
 use anastomesh_mesh::units::{counted, grouped, number, percent as share};
-use anastomesh_network::{HistorySample, RefineReport};
+use anastomesh_network::{HistorySample, NameOf, RefineReport};
 
 /// Pairs that a summary lists.
 const SPELT_OUT: usize = 3;
 
-/// Short summary: input, displacement, remaining overlaps, output files.
-pub fn brief(report: &RefineReport, ended: &Ended) -> String {
+/// Short summary: input, displacement, remaining overlaps, output files. `fidelity` are the rows that compare the result with
+/// the given network.
+pub fn brief(report: &RefineReport, fidelity: &str, name: NameOf, ended: &Ended) -> String {
     let RefineReport { size_before, size_after, displacement: d, given, result, .. } = report;
     let [nodes, edges] = [0, 1].map(|k| match (size_before[k], size_after[k]) {
         (before, after) if before == after => grouped(after),
@@ -30,22 +31,18 @@ pub fn brief(report: &RefineReport, ended: &Ended) -> String {
     };
     out += &row("moved", &moved);
     let (before, after) = (grouped(given.overlaps), counted(result.overlaps, "pair"));
-    out += &row("overlaps", &format!("{after} ({before} before)"));
+    out += &row("overlaps", &format!("{after} ({before} before; -v shows all figures)"));
     let [before, after] = [given, result].map(|figures| share(figures.metrics.cuttable.percent() / 100.0));
     out += &row("cuts", &format!("{after} of inner branches are long enough ({before} before)"));
     if !report.worse.is_empty() {
         out += &row("worse", &format!("{} (--hold prevents it)", report.worse_names()));
     }
-    report.write_crowded(SPELT_OUT, &mut out);
+    report.write_crowded(SPELT_OUT, name, &mut out);
     if !report.residual.pairs.is_empty() {
-        report.write_residual(SPELT_OUT, &mut out);
+        report.write_residual(SPELT_OUT, name, &mut out);
     }
-    out += &ended.rows(&[]);
-    let left = match report.residual.left {
-        0 => "no vessels overlap".into(),
-        n => format!("{} left", counted(n, "overlapping pair")),
-    };
-    out + &left + " (-v shows all figures)\n"
+    out += fidelity;
+    out + &ended.rows(&[])
 }
 
 /// Number of split nodes and added bends, if any.

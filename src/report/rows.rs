@@ -39,11 +39,6 @@ impl Ended {
                 None => longest.push(stage.clone()),
             }
         }
-        // Remaining time: reading, refinement, and earlier meshes of the run.
-        let staged: f64 = longest.iter().map(|stage| stage.seconds).sum();
-        if !longest.is_empty() {
-            longest.push(StageTime { stage: "other", seconds: self.seconds - staged });
-        }
         longest.retain(|stage| stage.seconds >= NOTICED.max(MENTIONED * self.seconds));
         longest.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
         let told: Vec<String> =

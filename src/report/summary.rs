@@ -1,23 +1,34 @@
-//! Short summary of a run: input, mesh, validity, output files, time.
+//! Short summary of a run: input, mesh, fidelity, validity, output files, time.
 
 use super::rows::{Ended, row};
-use crate::fidelity::Fidelity;
-use crate::pipeline::{Forecast, RunReport};
+use crate::fidelity::{Changes, Fidelity};
+use crate::pipeline::{Forecast, RunReport, named};
+use crate::run::Attempt;
 use anastomesh_mesh::check::CheckReport;
-use anastomesh_mesh::check::text::{faults, shape, sizes, tally, verdict};
+use anastomesh_mesh::check::text::{faults, shape, sizes, tally};
 use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
+use anastomesh_network::{NameOf, RefineReport};
 use std::fmt::{self, Write as _};
 
 /// Maximum number of listed items of a kind.
 const SPELT_OUT: usize = 3;
+/// Maximum number of listed overlaps with all details.
+const LISTED: usize = 50;
 
 /// Contents of a summary.
-#[derive(Clone, Debug)]
 pub struct Summary<'a> {
     pub run: &'a RunReport,
+    /// Report of the refinement of the meshed network.
+    pub refine: Option<&'a RefineReport>,
+    /// Passes over the network, and the index of the one that gave the mesh.
+    pub attempts: (&'a [Attempt], usize),
+    /// Names of nodes in the file.
+    pub name: NameOf<'a>,
     /// Check result; `None` without a mesh.
     pub check: Option<&'a CheckReport>,
     pub fidelity: Option<&'a Fidelity>,
+    /// Changes of the network; `None` without a mesh.
+    pub changes: Option<&'a Changes>,
     pub ended: Ended,
     /// True if all details are printed above it.
     pub listed: bool,
@@ -26,26 +37,69 @@ pub struct Summary<'a> {
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let [nodes, edges] = self.run.network;
-        let size = format!("{}, {}{}", counted(nodes, "node"), counted(edges, "edge"), self.overlaps());
-        out.write_str(&row("network", &size))?;
+        out.write_str(&row("network", &format!("{}, {}", counted(nodes, "node"), counted(edges, "edge"))))?;
+        self.overlaps(out)?;
         out.write_str(&row("blocks", &self.blocks()))?;
+        if let Some(passes) = passes(self.attempts) {
+            out.write_str(&row("passes", &passes))?;
+        }
         self.troubles(out)?;
         if let Some(check) = self.check {
             out.write_str(&of_mesh(check))?;
         }
-        if let Some(fidelity) = self.fidelity {
-            out.write_str(&row("vessels", &vessels(fidelity)))?;
-        }
+        out.write_str(&fidelity_rows(self.fidelity, self.changes, self.name))?;
         out.write_str(&self.ended.rows(&self.run.stages))?;
         self.check.map_or(Ok(()), |check| out.write_str(&of_check(check, self.listed)))
     }
 }
 
+/// Rows on the difference between the result and the given network.
+pub fn fidelity_rows(fidelity: Option<&Fidelity>, changes: Option<&Changes>, name: NameOf) -> String {
+    let measured = fidelity.map(|fidelity| fidelity.rows(name)).into_iter().flatten();
+    let mut rows: String = measured.map(|(label, text)| row(label, &text)).collect();
+    if let Some(changes) = changes {
+        rows += &row("changes", &changes.text(name));
+    }
+    rows
+}
+
+/// Passes over the network with the fault of each; `None` if there was one alone.
+fn passes((attempts, kept): (&[Attempt], usize)) -> Option<String> {
+    let words = |value: serde_json::Value| match value {
+        serde_json::Value::Object(map) => map.keys().map(|key| key.replace('_', " ")).collect(),
+        value => value.as_str().unwrap_or_default().replace('_', " "),
+    };
+    let pass = |(i, attempt): (usize, &Attempt)| {
+        let name = serde_json::to_value(attempt.strategy).map_or_else(|_| String::new(), words);
+        let fault = serde_json::to_value(attempt.fault).map_or_else(|_| String::new(), words);
+        let fault = if fault.is_empty() { "sound".into() } else { format!("fault: {fault}") };
+        format!("{name} ({fault}{})", if i == kept { ", kept" } else { "" })
+    };
+    (attempts.len() > 1).then(|| attempts.iter().enumerate().map(pass).collect::<Vec<_>>().join(", "))
+}
+
 impl Summary<'_> {
-    fn overlaps(&self) -> String {
-        match self.run.overlaps.len() {
-            0 => String::new(),
-            n => format!("; {}", counted(n, "overlapping pair")),
+    /// Appends the number of overlaps, before and after a refinement, and the deepest that remain.
+    fn overlaps(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let places = self.run.overlapping_places();
+        let pairs = counted(self.run.overlaps.len(), "edge pair");
+        match self.refine {
+            None if places.is_empty() => return Ok(()),
+            None => out.write_str(&row("overlaps", &format!("{} ({pairs})", counted(places.len(), "place"))))?,
+            Some(report) => {
+                let before = grouped(report.given.overlaps);
+                out.write_str(&row("overlaps", &format!("{pairs} ({before} before refinement)")))?;
+            }
+        }
+        let listed = if self.listed { places.len().min(LISTED) } else { SPELT_OUT };
+        for m in places.iter().take(listed) {
+            let [[a, b], [c, d]] = m.edges.map(|ends| ends.map(self.name));
+            let [distance, radii] = [m.distance, m.radii].map(digits);
+            writeln!(out, "  edges {a}-{b} and {c}-{d}: distance {distance}, sum of radii {radii}")?;
+        }
+        match places.len().saturating_sub(listed) {
+            0 => Ok(()),
+            hidden => writeln!(out, "    and {} more (-v lists more, --json all)", grouped(hidden)),
         }
     }
 
@@ -67,7 +121,8 @@ impl Summary<'_> {
     /// Appends failed blocks, axes outside the wall, and fused vessels.
     fn troubles(&self, out: &mut fmt::Formatter) -> fmt::Result {
         for failed in self.run.failed.iter().take(SPELT_OUT) {
-            writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
+            let nodes = named(&failed.nodes, self.name);
+            writeln!(out, "  FAILED {} (nodes {nodes}): {}", failed.block, failed.reason)?;
             if let Some(dump) = &failed.dump {
                 writeln!(out, "    input written to {dump}")?;
             }
@@ -75,14 +130,14 @@ impl Summary<'_> {
         more(out, self.run.failed.len())?;
         let astray = || self.run.fused.iter().filter(|f| f.astray.outside.is_some() || f.astray.fused.is_some());
         for fused in astray().take(SPELT_OUT) {
-            let (block, nodes) = (&fused.block, &fused.nodes);
+            let (block, nodes) = (&fused.block, named(&fused.nodes, self.name));
             if let Some(at) = fused.astray.outside {
                 let place = format!("{:.4} {:.4} {:.4}", at.x, at.y, at.z);
-                writeln!(out, "  {block} (nodes {nodes:?}): a vessel axis lies outside the wall at {place}")?;
+                writeln!(out, "  {block} (nodes {nodes}): a vessel axis lies outside the wall at {place}")?;
             }
             if let Some([p, _]) = fused.astray.fused {
                 let place = format!("{:.4} {:.4} {:.4}", p.x, p.y, p.z);
-                writeln!(out, "  {block} (nodes {nodes:?}): vessels fused into one lumen at {place}")?;
+                writeln!(out, "  {block} (nodes {nodes}): vessels fused into one lumen at {place}")?;
             }
         }
         more(out, astray().count())
@@ -98,20 +153,9 @@ pub fn of_mesh(check: &CheckReport) -> String {
 /// Options that show more faults.
 const MORE_FAULTS: &str = " (-v lists ten, --report shows their positions)";
 
-/// Result of a check: passed conditions, failed ones, verdict. With `listed`, all are printed elsewhere.
+/// Result of a check without its verdict: passed and failed conditions. With `listed`, all are printed elsewhere.
 pub fn of_check(check: &CheckReport, listed: bool) -> String {
-    format!("{}{}{}\n", row("check", &tally(check, listed)), faults(check, MORE_FAULTS), verdict(check.verdict))
-}
-
-/// Fidelity of a mesh: displacement if vessels were moved, else the radius error of the wall.
-fn vessels(fidelity: &Fidelity) -> String {
-    let volume = format!("volume {:+.1} %", 100.0 * fidelity.swelling());
-    let (axis, wall) = (&fidelity.axis.spread, &fidelity.wall);
-    if fidelity.is_moved() {
-        let [median, most] = [axis.median, axis.worst].map(digits);
-        return format!("axis displacement median {median} radii, max {most}; {volume}");
-    }
-    format!("median radius error {:.1} %, {volume}", 100.0 * wall.median)
+    row("check", &tally(check, listed)) + &faults(check, MORE_FAULTS)
 }
 
 fn more(out: &mut fmt::Formatter, count: usize) -> fmt::Result {
@@ -143,6 +187,12 @@ mod tests {
     use anastomesh_mesh::check::check_tets;
     use anastomesh_mesh::shapes::cube_lattice;
 
+    fn summary<'a>(run: &'a RunReport, check: Option<&'a CheckReport>, ended: Ended) -> Summary<'a> {
+        let name: NameOf = &|node| (node + 1).to_string();
+        let (refine, fidelity, changes) = (None, None, None);
+        Summary { run, refine, attempts: (&[], 0), name, check, fidelity, changes, ended, listed: false }
+    }
+
     fn run() -> RunReport {
         RunReport {
             network: [1234, 1233],
@@ -165,7 +215,7 @@ mod tests {
         let check = check_tets(&mesh, None);
         let files = vec![("tree.vtu".to_owned(), 1_016_155)];
         let ended = Ended { files, seconds: 160.0, memory: Some(250_000_000) };
-        let text = Summary { run: &run(), check: Some(&check), fidelity: None, ended, listed: false }.to_string();
+        let text = summary(&run(), Some(&check), ended).to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors
@@ -176,7 +226,7 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 0.62500
         assert!(text.contains("\ntime     3 min (blocks 2 min, write 22 s); max memory 250 MB\n"), "{text}");
         assert!(text.contains("\nFAIL 9 tetrahedra are inverted or flat\n         tetrahedron 0 at "), "{text}");
         assert!(text.contains("\n         and 6 more (-v lists ten, --report shows their positions)\n"), "{text}");
-        assert!(text.ends_with("\nNOT valid\n"), "{text}");
+        assert!(text.lines().all(|line| !line.contains("NOT valid")), "{text}");
     }
 
     #[test]
@@ -190,22 +240,15 @@ mesh     48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 0.62500
             dump: Some(format!("d/{i}.json")),
         };
         let run = RunReport { failed: (0..5).map(failed).collect(), ..run() };
-        let text = Summary {
-            run: &run,
-            check: None,
-            fidelity: None,
-            ended: Ended { seconds: 158.0, ..Ended::default() },
-            listed: false,
-        }
-        .to_string();
+        let text = summary(&run, None, Ended { seconds: 158.0, ..Ended::default() }).to_string();
         let expected = "\
 network  1,234 nodes, 1,233 edges
 blocks   0 clusters, 0 connectors, 5 FAILED
-  FAILED cluster 0 (nodes [0]): no room
+  FAILED cluster 0 (nodes 1): no room
     input written to d/0.json
-  FAILED cluster 1 (nodes [1]): no room
+  FAILED cluster 1 (nodes 2): no room
     input written to d/1.json
-  FAILED cluster 2 (nodes [2]): no room
+  FAILED cluster 2 (nodes 3): no room
     input written to d/2.json
     and 2 more (-v lists them)
 time     3 min (blocks 2 min, write 22 s)

@@ -1,6 +1,7 @@
 //! Report of a tetrahedralization, as text and JSON.
 
 use super::rows::{Ended, row};
+use super::verdict::Verdict;
 use crate::pipeline::StageTime;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::quality::{TetQuality, dihedral_range, volume6};
@@ -322,9 +323,19 @@ pub fn volume_of(mesh: &TetMesh, t: &[u32; 4]) -> f64 {
 }
 
 impl TetReport {
-    /// True if every bound that can always be met is met.
-    pub fn bounds_met(&self) -> bool {
-        self.bounds.iter().all(|result| result.bound != BoundResult::VOLUME || result.beyond == 0)
+    /// Verdict of the run; `checked`: the input was only checked.
+    pub fn verdict(&self, checked: bool) -> Verdict {
+        if checked {
+            return Verdict::good("no fault found");
+        }
+        // Only the bound on the volume can always be met.
+        let mut violated = self.bounds.iter().filter(|b| b.bound == BoundResult::VOLUME && b.beyond > 0);
+        violated.next().map_or_else(
+            || Verdict::good("meshed"),
+            |b| {
+                Verdict::bad(format!("NOT within bounds: {} {} violated by {}", b.bound, b.value, tetrahedra(b.beyond)))
+            },
+        )
     }
 
     /// Appends the results of requested bounds, and the influence of the input.
@@ -440,7 +451,12 @@ mod tests {
         // The face belongs to the first tetrahedron, which is too large; the second is flat.
         assert_eq!(results.iter().map(|r| r.on_input).collect::<Vec<_>>(), [0, 0, 1]);
         let report = TetReport { bounds: results, to_split: Some("--split"), ..TetReport::default() };
-        assert!(!report.bounds_met());
+        let verdict = report.verdict(false);
+        assert!(
+            !verdict.is_good && verdict.text.ends_with("volume at most 0.1 violated by 1 tetrahedron"),
+            "{verdict:?}"
+        );
+        assert!(TetReport::default().verdict(false).is_good);
         let text = report.text(false, &Ended::default());
         assert!(text.contains("volume at most 0.1: violated by 1 tetrahedron, of which 1 at fixed input triangles\n"));
         assert!(text.contains("--split allows splitting them"));

@@ -1,7 +1,8 @@
 //! Builder of a run.
 
 use super::error::MeshingError;
-use super::networks::Networks;
+use super::limits::Limits;
+use super::networks::{Networks, without_islands};
 use super::prepared::{PreparedRun, Settings};
 use super::result::NetworkMesh;
 use crate::pipeline::{Estimate, FlowPlan, Inlets, MeshPlan, Store, TooLarge, Whole};
@@ -36,7 +37,7 @@ pub struct Run {
     /// Lengths by which inlets and outlets are extended, in their radii.
     extension: [f64; 2],
     flow: FlowPlan,
-    max_displacement: Option<f64>,
+    limits: Limits,
 }
 
 impl Run {
@@ -50,7 +51,7 @@ impl Run {
             roots: Vec::new(),
             extension: [0.0; 2],
             flow: FlowPlan::default(),
-            max_displacement: None,
+            limits: Limits::default(),
         }
     }
 
@@ -102,11 +103,10 @@ impl Run {
         self
     }
 
-    /// Limits the distance of the meshed axis from the given one, in radii (default: 1 in measured networks, more where an
-    /// overlap demands it; no limit in others).
+    /// Sets the limits on the difference between the mesh and the given network.
     #[must_use]
-    pub fn max_displacement(mut self, radii: f64) -> Self {
-        self.max_displacement = Some(radii);
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
         self
     }
 
@@ -115,11 +115,13 @@ impl Run {
     /// # Errors
     /// If a plan is out of range, the network cannot be used, or a named inlet is not a terminal.
     pub fn prepared(self) -> Result<PreparedRun, MeshingError> {
-        let Self { file, mut plan, prepare: params, refine, mut roots, extension, flow, max_displacement } = self;
+        let Self { file, mut plan, prepare: params, refine, mut roots, extension, flow, limits } = self;
         plan.validate()?;
         flow.check()?;
         let NetworkFile { skeleton: raw, groups, notes, names, roots: roots_of_file, .. } = file;
         let Prepared { skeleton, given, outline, report } = prepare(&raw, &groups, &params)?;
+        // Components that the caller asked to remove are not part of the network to compare with.
+        let [given, outline] = [given, outline].map(|network| without_islands(network, &report.islands));
         drop(raw);
         roots.extend(plan.roots.iter().map(|&root| names.of(NodeId(root))));
         let inlets = Inlets::of(&skeleton, &names, &roots_of_file, &roots)?;
@@ -129,8 +131,8 @@ impl Run {
         let networks = Networks::new(given, outline, skeleton, names, report);
         let retracts = params.touching != Touching::Keep;
         flow.check_with(&networks.prepared, &inlets.sites(&networks.prepared), &networks.names)?;
-        let settings = Settings { refine, retracts, flow, max_displacement };
-        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, origin: Vec::new(), settings })
+        let settings = Settings { refine, retracts, flow, limits };
+        Ok(PreparedRun { networks, notes, inlets, cut_short, plan, settings })
     }
 
     /// Meshes into a store; the mesh is never in memory as a whole. `fits` hears what the run will take before anything is

@@ -3,9 +3,10 @@
 use crate::fidelity::Compared;
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_network::{PrepareReport, TouchedBy, TouchingTip, take_back};
+use anastomesh_network::{Island, PrepareReport, TouchedBy, TouchingTip, take_back};
 use anastomesh_network::{RefineReport, Refined};
-use anastomesh_skeleton::{EdgeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Overlap, Skeleton, clean};
+use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
 /// Networks of a run, and what was done to get from one to the next. Those that do not differ are shared.
@@ -26,9 +27,27 @@ pub struct Networks {
     pub prepare: PrepareReport,
     /// Report of the refinement; `None` if `network` was not refined.
     pub refine: Option<RefineReport>,
+    /// Network as refinement left it; `None` as `refine`.
+    pub refined: Option<Arc<RefinedAxis>>,
     /// Number of tips in `prepare` that the cures treated, before any attempt to mesh.
     tips_cured: usize,
 }
+
+/// Refined network, before terminals were retracted.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RefinedAxis {
+    /// Network.
+    pub skeleton: Arc<Skeleton>,
+    /// Position of each node before it moved.
+    pub origin: Vec<Point3>,
+}
+
+/// Distance of two axes, in sums of radii, below which overlapping vessels of different branch points make a valid mesh of
+/// a grown network impossible. Overlaps of valid meshes in the shared networks are shallower.
+const HOPELESS: f64 = 0.6;
+/// Maximum number of edges of a measured network that is meshed as given although such vessels overlap.
+const SMALL: usize = 10_000;
 
 impl Networks {
     pub(super) fn new(
@@ -41,7 +60,17 @@ impl Networks {
         let given = Arc::new(given);
         let [outline, prepared] = [outline, prepared].map(|network| shared(network, &given));
         let tips_cured = prepare.touching.len();
-        Self { given, outline, network: Arc::clone(&prepared), prepared, names, prepare, refine: None, tips_cured }
+        Self {
+            given,
+            outline,
+            network: Arc::clone(&prepared),
+            prepared,
+            names,
+            prepare,
+            refine: None,
+            refined: None,
+            tips_cured,
+        }
     }
 
     /// Networks to compare a mesh with; `meshed` is the network that was meshed, with nodes split.
@@ -49,16 +78,17 @@ impl Networks {
         Compared { given: &self.given, outline: &self.outline, meshed }
     }
 
-    /// Takes a refined network as the one to be meshed; returns the position of each node before it moved.
-    pub(super) fn take_refined(&mut self, refined: Refined) -> Vec<Point3> {
+    /// Takes a refined network as the one to be meshed.
+    pub(super) fn take_refined(&mut self, refined: Refined) {
         let Refined { skeleton, origin, report, .. } = refined;
-        (self.network, self.refine) = (Arc::new(skeleton), Some(report));
-        origin
+        self.network = Arc::new(skeleton);
+        self.refine = Some(report);
+        self.refined = Some(Arc::new(RefinedAxis { skeleton: Arc::clone(&self.network), origin }));
     }
 
     /// Networks of another attempt: the prepared network, as it is or refined.
     pub(super) fn again(&self, refined: Option<Refined>) -> Self {
-        let mut again = Self { network: Arc::clone(&self.prepared), refine: None, ..self.clone() };
+        let mut again = Self { network: Arc::clone(&self.prepared), refine: None, refined: None, ..self.clone() };
         again.prepare.touching.truncate(self.tips_cured);
         if let Some(refined) = refined {
             again.take_refined(refined);
@@ -83,13 +113,41 @@ impl Networks {
 
     /// True if all overlapping vessels of the prepared network leave one bifurcation.
     pub(super) fn overlaps_at_forks_alone(&self) -> bool {
+        !self.overlaps_apart(f64::INFINITY)
+    }
+
+    /// True if the prepared network may give a valid mesh without refinement. Many overlaps of measured networks do no harm,
+    /// so those are meshed as given unless that takes long.
+    pub(super) fn may_be_sound_as_given(&self) -> bool {
+        let is_small = self.prepare.measured && self.prepared.edges.len() <= SMALL;
+        is_small || !self.overlaps_apart(HOPELESS)
+    }
+
+    /// True if vessels that leave no common bifurcation overlap, with axes closer than a share of their radii.
+    fn overlaps_apart(&self, share: f64) -> bool {
         let network = &self.prepared;
         let adjacency = network.adjacency();
         let branches = network.branches(&adjacency);
         let ends = |edge: EdgeId| branches.list[branches.of_edge[edge.index()].0.index()].ends();
         let meet_at_fork = |edges: [EdgeId; 2]| ends(edges[0]).iter().any(|end| ends(edges[1]).contains(end));
-        network.overlaps(&adjacency).pairs.iter().all(|overlap| meet_at_fork(overlap.edges))
+        let apart = |overlap: &Overlap| overlap.distance < share * overlap.radii && !meet_at_fork(overlap.edges);
+        network.overlaps(&adjacency).pairs.iter().any(apart)
     }
+}
+
+/// Network without the components that contain the nodes of removed islands.
+pub(crate) fn without_islands(network: Skeleton, islands: &[Island]) -> Skeleton {
+    if islands.is_empty() {
+        return network;
+    }
+    let removed: FxHashSet<u32> = islands.iter().map(|island| island.node).collect();
+    let of_node = network.components(&network.adjacency()).of_node;
+    let is_removed = |n: NodeId| removed.contains(&network.node(n).original);
+    let gone: FxHashSet<u32> = network.node_ids().filter(|&n| is_removed(n)).map(|n| of_node[n.index()]).collect();
+    let mut rest = network.clone();
+    rest.edges.retain(|edge| !gone.contains(&of_node[edge.nodes[0].index()]));
+    // Without an edge left, nothing was removed.
+    clean(&rest).map_or(network, |(rest, _)| rest)
 }
 
 /// Shares `other` if the network is equal to it: networks have millions of vessels.

@@ -1,16 +1,17 @@
 //! A network ready to be meshed.
 
 use super::error::MeshingError;
+use super::limits::Limits;
 use super::networks::Networks;
 use super::result::NetworkMesh;
 use super::strategy::{self, Attempt, Candidate, Meshing, Strategy};
+use crate::fidelity::Changes;
 use crate::pipeline::{
     Clock, Estimate, FlowPlan, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
     Store, Stored, TooLarge, Whole, fingerprint, make_share, mesh_in_memory,
 };
 use anastomesh_io::network::NetworkNote;
 use anastomesh_mesh::VolumeMesh;
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::gather;
 use anastomesh_network::{RefineParams, Refined, refine};
@@ -25,7 +26,7 @@ pub(super) struct Settings {
     /// True if terminals that could not be capped are retracted.
     pub retracts: bool,
     pub flow: FlowPlan,
-    pub max_displacement: Option<f64>,
+    pub limits: Limits,
 }
 
 /// Network with its cures applied and its inlets chosen, and the plan to mesh it by.
@@ -43,31 +44,20 @@ pub struct PreparedRun {
     pub cut_short: Vec<(u32, f64)>,
     /// Plan, with the named inlets as roots.
     pub plan: MeshPlan,
-    /// Position of each node of the refined network before it moved; empty before [`PreparedRun::refined`].
-    pub origin: Vec<Point3>,
     pub(super) settings: Settings,
 }
 
 impl PreparedRun {
-    /// Refines the network, if the run asks for it. Runs that share a work directory refine once; `store` is that
-    /// directory.
+    /// Refines the network, if the run asks for it and the network is not tried as given first. Runs that share a work
+    /// directory refine once; `store` is that directory.
     ///
     /// # Errors
     /// If a parameter is out of range, the run is cancelled, or the work directory cannot be used.
     pub fn refined(mut self, store: Option<&Store>, progress: &dyn Progress) -> Result<Self, MeshingError> {
-        let Some(params) = self.refinement().filter(|_| self.networks.refine.is_none()) else { return Ok(self) };
-        let network = &self.networks.prepared;
-        let make = || Ok::<Refined, MeshingError>(refine(network, &params, progress)?);
-        let key = || {
-            let mut key = KeyMaker::new("refined");
-            key.text(&format!("{:?} {params:?}", fingerprint(network)));
-            key.finish()
-        };
-        let refined = match store {
-            Some(store) => store.once(("refined", key), progress, make)?,
-            None => make()?,
-        };
-        self.origin = self.networks.take_refined(refined);
+        let is_due = self.networks.refine.is_none() && !self.networks.may_be_sound_as_given();
+        if let Some(params) = self.refinement().filter(|_| is_due || self.plan.smooths_joints()) {
+            self.networks = refined(&self.networks, &params, store, progress)?;
+        }
         Ok(self)
     }
 
@@ -125,14 +115,24 @@ impl PreparedRun {
     ) -> Result<NetworkMesh<Whole<'a>>, MeshingError> {
         let run = self.refined(Some(store), progress)?;
         let refine = run.refinement();
-        let Self { networks, plan, settings, origin, .. } = run;
-        // One point per node, which the mesher does not need.
-        drop(origin);
-        let retracts = settings.retracts;
-        let mut meshing = Meshing { store, plan: &plan, fits, progress, retracts, refine, attempts: Vec::new() };
+        let Self { networks, plan, settings, .. } = run;
+        let again = |networks: &Networks| match &refine {
+            Some(params) => refined(networks, params, Some(store), progress),
+            None => Ok(networks.clone()),
+        };
+        let mut meshing = Meshing {
+            store,
+            plan: &plan,
+            fits,
+            progress,
+            retracts: settings.retracts,
+            refine: refine.clone(),
+            refined: &again,
+            attempts: Vec::new(),
+        };
         let best = strategy::mesh(networks, &mut meshing);
         let attempts = meshing.attempts;
-        let Candidate { stored, networks, attempt } = best.map_err(strategy::Failure::into_error)?;
+        let Candidate { stored, networks, attempt } = best?;
         let Stored { whole: mesh, expectation, check, report, network } = stored;
         let found = NetworkMesh {
             mesh,
@@ -144,10 +144,11 @@ impl PreparedRun {
             attempts,
             kept: attempt,
             fidelity: None,
+            changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.flow, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
 
     /// Meshes in memory. Woven joints are smoothed, if the plan asks for it; that is one attempt, without fallbacks.
@@ -187,9 +188,31 @@ impl PreparedRun {
             attempts: vec![Attempt { strategy: Strategy::Planned, fault }],
             kept: 0,
             fidelity: None,
+            changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
         };
-        found.evaluated(&plan, &settings.flow, settings.max_displacement, progress)
+        found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
+}
+
+/// Networks with the prepared one refined, by a work directory only once.
+fn refined(
+    networks: &Networks,
+    params: &RefineParams,
+    store: Option<&Store>,
+    progress: &dyn Progress,
+) -> Result<Networks, MeshingError> {
+    let network = &networks.prepared;
+    let make = || Ok::<Refined, MeshingError>(refine(network, params, progress)?);
+    let key = || {
+        let mut key = KeyMaker::new("refined");
+        key.text(&format!("{:?} {params:?}", fingerprint(network)));
+        key.finish()
+    };
+    let refined = match store {
+        Some(store) => store.once(("refined", key), progress, make)?,
+        None => make()?,
+    };
+    Ok(networks.again(Some(refined)))
 }

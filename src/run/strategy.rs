@@ -1,14 +1,17 @@
-//! Strategies to mesh a network: the network as planned first, then others until a mesh is sound.
+//! Strategies to mesh a network: as given where that can succeed, then as planned, then fallbacks until a mesh is sound.
 
 use super::error::MeshingError;
+use super::limits;
 use super::networks::Networks;
-use crate::fidelity::lumen_of;
+use crate::fidelity::{Displacements, Tubes, lumen_of};
 use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_shared};
 use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::touching_text;
 use anastomesh_network::{RefineParams, refine};
+use anastomesh_skeleton::NodeId;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
 const MAX_RETRACTIONS: usize = 4;
@@ -26,6 +29,8 @@ const WIDER: f64 = 1.2;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Strategy {
+    /// The prepared network before refinement, if its overlaps do not exclude a valid mesh.
+    AsGiven,
     /// The prepared network, refined if the run asks for it.
     Planned,
     /// The network of the attempt before, with terminals retracted that could not be capped.
@@ -98,32 +103,61 @@ pub(super) struct Meshing<'a, 'b> {
     pub retracts: bool,
     /// Parameters of the refinement, if there is one.
     pub refine: Option<RefineParams>,
+    /// Refines a network that was first meshed as given.
+    pub refined: &'b dyn Fn(&Networks) -> Result<Networks, MeshingError>,
     pub attempts: Vec<Attempt>,
 }
 
-/// Meshes a network. Refinement must not end in something worse than none: where the planned network gives no sound mesh, or
-/// one of another volume, fallbacks are tried; the planned one is kept if none is better.
-pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Outcome<'a> {
-    let first = meshing.attempt(Strategy::Planned, networks);
-    let (fault, networks) = match &first {
+/// Meshes a network. Refinement must never give a worse mesh than none.
+///
+/// A sound mesh of the network as given is kept, and nothing is moved. Otherwise the network is refined. If that gives no
+/// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one.
+pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
+    let (as_given, networks) = if meshing.refine.is_some() && networks.refine.is_none() {
+        match meshing.attempt(Strategy::AsGiven, networks.clone()) {
+            Ok(candidate) if meshing.attempts[candidate.attempt].fault.is_none() => {
+                meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
+                return Ok(candidate);
+            }
+            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
+            other => (other.ok(), (meshing.refined)(&networks)?),
+        }
+    } else {
+        (None, networks)
+    };
+    let is_tried = meshing.attempts.iter().any(|attempt| attempt.strategy == Strategy::AsGiven);
+    let planned = meshing.attempt(Strategy::Planned, networks);
+    let (fault, networks) = match &planned {
         Ok(candidate) => (meshing.attempts[candidate.attempt].fault, &candidate.networks),
         Err(Failure { error, networks }) => {
             (matches!(error, RunError::BlocksFailed(_)).then_some(Fault::NoMesh), &**networks)
         }
     };
-    let Some(fault) = fault.filter(|_| networks.refine.is_some()) else { return first };
-    for strategy in Strategy::FALLBACKS {
-        let Some(again) = meshing.networks_for(strategy, fault, networks) else { continue };
-        match meshing.attempt(strategy, again) {
-            Ok(candidate) if meshing.is_better(&candidate, fault) => {
-                meshing.progress.note(&kept(strategy, fault));
-                return Ok(candidate);
+    if let Some(fault) = fault.filter(|_| networks.refine.is_some()) {
+        for strategy in Strategy::FALLBACKS.into_iter().filter(|&s| s != Strategy::Unrefined || !is_tried) {
+            let Some(again) = meshing.networks_for(strategy, fault, networks) else { continue };
+            match meshing.attempt(strategy, again) {
+                Ok(candidate) if meshing.is_better(&candidate, fault) => {
+                    meshing.progress.note(&kept(strategy, fault));
+                    return Ok(candidate);
+                }
+                Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
+                Ok(_) | Err(_) => {}
             }
-            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure),
-            Ok(_) | Err(_) => {}
         }
     }
-    first
+    let Some(as_given) = as_given else { return planned.map_err(Failure::into_error) };
+    match planned {
+        Err(failure) if matches!(failure.error, RunError::BlocksFailed(_)) => Ok(as_given),
+        Err(failure) => Err(failure.into_error()),
+        Ok(planned) if meshing.is_closer(&as_given, &planned) => {
+            meshing
+                .progress
+                .note("refinement gives a mesh that differs more from the given network: nothing was moved");
+            Ok(as_given)
+        }
+        Ok(planned) => Ok(planned),
+    }
 }
 
 /// Fault of a mesh but for its volume.
@@ -145,6 +179,14 @@ fn kept(strategy: Strategy, fault: Fault) -> String {
     }
 }
 
+/// Difference between a mesh and the given network, as a share of the usual limits: the larger one of the volume error and of
+/// the displacement of the axis.
+fn difference(Candidate { stored, networks, .. }: &Candidate) -> f64 {
+    let meshed: &Arc<_> = &stored.network;
+    let axis = Displacements::of(&networks.given, meshed, &Tubes::of(meshed)).spread.p99;
+    (volume_error(stored, networks) / limits::LUMEN).max(axis / limits::MEASURED)
+}
+
 /// Relative difference of a mesh's volume from that of the given lumen.
 fn volume_error(stored: &Stored, networks: &Networks) -> f64 {
     (stored.check.counts.volume / lumen_of(&networks.outline) - 1.0).abs()
@@ -163,6 +205,14 @@ impl<'a> Meshing<'a, '_> {
             }
             _ => None,
         }
+    }
+
+    /// True if the first mesh is sound and the second is not, or differs more from the given network.
+    fn is_closer(&self, first: &Candidate, second: &Candidate) -> bool {
+        if self.fault_of(&first.stored).is_some() {
+            return false;
+        }
+        self.fault_of(&second.stored).is_some() || difference(first) < difference(second)
     }
 
     /// True if the mesh of a fallback is valid, and its volume error smaller if that was the fault.
@@ -195,7 +245,8 @@ impl<'a> Meshing<'a, '_> {
                 return self.ended(strategy, made, fault, networks);
             }
             self.attempts.push(Attempt { strategy, fault });
-            touching_text(&told).lines().for_each(|line| self.progress.note(line));
+            let name = |node| networks.names.of(NodeId(node));
+            touching_text(&told, &name).lines().for_each(|line| self.progress.note(line));
             strategy = Strategy::RetractedTips;
             retractions += 1;
         }
@@ -210,7 +261,7 @@ impl<'a> Meshing<'a, '_> {
         networks: Networks,
     ) -> Outcome<'a> {
         let volume = |stored: &Stored| {
-            let error = networks.refine.as_ref().map(|_| volume_error(stored, &networks));
+            let error = self.refine.as_ref().map(|_| volume_error(stored, &networks));
             error.filter(|&error| error > MAX_VOLUME_ERROR).map(Fault::Volume)
         };
         let fault = fault.or_else(|| made.as_ref().ok().and_then(volume));

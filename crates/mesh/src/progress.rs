@@ -7,6 +7,8 @@ use std::io;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Stage {
+    /// Reads and repairs the input.
+    Read,
     /// Moves the nodes of a network apart (3.1); counted in iterations.
     Move,
     /// Splits nodes of valence above 3 (3.1), searches for overlapping vessels.
@@ -25,8 +27,12 @@ pub enum Stage {
     Joints,
     /// Verifies the mesh.
     Check,
+    /// Compares the mesh with its network.
+    Compare,
     /// Writes the mesh.
     Write,
+    /// Writes an HTML report.
+    Report,
     /// Checks a surface or a complex.
     Validate,
     /// Computes the Delaunay tetrahedralization of its points.
@@ -47,6 +53,7 @@ impl Stage {
     /// Human-readable name.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Read => "read",
             Self::Move => "move",
             Self::Prepare => "prepare",
             Self::Partition => "partition",
@@ -56,7 +63,9 @@ impl Stage {
             Self::Merge => "merge",
             Self::Joints => "joints",
             Self::Check => "check",
+            Self::Compare => "compare",
             Self::Write => "write",
+            Self::Report => "report",
             Self::Validate => "validate",
             Self::Delaunay => "delaunay",
             Self::Recover => "recover",

@@ -20,6 +20,7 @@
 
 pub mod flow;
 mod grow;
+mod names;
 mod prepare;
 mod refine;
 
@@ -29,6 +30,7 @@ pub use grow::{
     BedParams, Dual, GenerateError, GenerateParams, Looped, Morphometry, OrderFigures, Organ, Published, RAT_KIDNEY,
     dual, generate, looped,
 };
+pub use names::NameOf;
 pub use prepare::{
     ClosedLoop, FilledRadius, Island, JoinedNodes, JoinedReport, MergeReport, Merged, Parting, PrepareParams,
     PrepareReport, Prepared, RadiusDefect, ResampleReport, ShortTip, Size, Spur, SpurReason, TouchedBy, Touching,

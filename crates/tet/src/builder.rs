@@ -1,7 +1,6 @@
 //! The library's front door.
 
 use super::certify::Place;
-use super::certify_hull::certify_hull;
 use super::contacts;
 use super::error::{LayersConflict, TetError};
 use super::fill::fill;
@@ -327,11 +326,11 @@ impl Tetrahedralizer {
     pub fn delaunay(&self, points: &[Point3]) -> Result<Tetrahedralization, TetError> {
         let watch = self.watch();
         watch.report(Stage::Delaunay, 0, 1)?;
-        let complex = delaunay::delaunay_watched(points, &watch)?;
+        let made = delaunay::delaunay_ordered(points, &watch)?;
         watch.report(Stage::Delaunay, 1, 1)?;
         watch.report(Stage::Certify, 0, 1)?;
-        let faces = certify_hull(&complex)?;
-        let mesh = complex.into_mesh();
+        let faces = made.certify(points)?;
+        let mesh = made.into_mesh(points);
         watch.report(Stage::Certify, 1, 1)?;
         Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
     }

@@ -108,6 +108,19 @@ pub enum CertifyError {
     },
 }
 
+impl CertifyError {
+    /// The same error of a tetrahedralization of points with other vertex numbers.
+    pub(super) fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
+        match self {
+            Self::NotPositive { tet, vertices } => Self::NotPositive { tet, vertices: vertices.map(name) },
+            Self::NotConforming { face } => Self::NotConforming { face: face.map(name) },
+            Self::NotConvex { face } => Self::NotConvex { face: face.map(name) },
+            Self::PointUnused { point } => Self::PointUnused { point: name(point) },
+            other => other,
+        }
+    }
+}
+
 /// Proves that `mesh` fills `surface`: its points begin with the surface's, bit for bit; every tetrahedron is positive
 /// by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; the boundary is the surface,
 /// triangle for triangle, with the same orientation; the volumes agree to rounding.

@@ -260,13 +260,32 @@ impl Complex {
         }
     }
 
-    /// Returns the real tetrahedra in slot order, and all points. Collects in place: tetrahedra reuse the memory of the
-    /// cells, which have the same alignment.
-    pub fn into_mesh(self) -> TetMesh {
+    /// Returns the real tetrahedra in slot order, and all points.
+    pub fn into_mesh(mut self) -> TetMesh {
+        let points = std::mem::take(&mut self.points);
+        TetMesh { points, tets: self.into_tets(|v| v) }
+    }
+
+    /// Returns the real tetrahedra in slot order, with vertex `v` renamed to `name(v)`. Collects in place: tetrahedra reuse the
+    /// memory of the cells, which have the same alignment.
+    pub(super) fn into_tets(self, name: impl Fn(u32) -> u32) -> Vec<[u32; 4]> {
         let real = |cell: &Cell| cell.verts[0] != DEAD && cell.verts[3] != GHOST;
-        let mut tets: Vec<[u32; 4]> = self.cells.into_iter().filter(real).map(|cell| cell.verts).collect();
+        let mut tets: Vec<[u32; 4]> = self.cells.into_iter().filter(real).map(|cell| cell.verts.map(&name)).collect();
         tets.shrink_to_fit();
-        TetMesh { points: self.points, tets }
+        tets
+    }
+
+    /// Returns the same complex over `points` in another order, with vertex `v` renamed to `names[v]`.
+    pub(super) fn renumbered(mut self, names: &[u32], points: Vec<Point3>) -> Self {
+        for v in self.cells.iter_mut().flat_map(|cell| &mut cell.verts) {
+            // Neither ghost vertices nor free slots have a name.
+            *v = names.get(*v as usize).copied().unwrap_or(*v);
+        }
+        let mut vertex_tet = vec![NONE; points.len()];
+        for (&v, &t) in names.iter().zip(&self.vertex_tet) {
+            vertex_tet[v as usize] = t;
+        }
+        Self { points, vertex_tet, ..self }
     }
 
     /// As [`Complex::into_mesh`], without unused points from index `fixed` on.

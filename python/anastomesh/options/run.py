@@ -32,6 +32,29 @@ class WorkOptions(TypedDict, total=False):
     make_missing: Annotated[bool, Option("Make blocks that shards have left undone instead of failing", False)]
 
 
+class FidelityOptions(TypedDict, total=False):
+    """Fidelity"""
+
+    max_displacement: Annotated[
+        float | None,
+        Option(
+            "Maximum distance of the axis from the given one, in radii; above it the result is an InvalidError; "
+            "if absent, 1 for measured networks and no limit for others"
+        ),
+    ]
+    allow_displaced: Annotated[bool, Option("Warn instead of failing when the axis exceeds max_displacement", False)]
+    max_lumen_error: Annotated[
+        float, Option("Maximum relative difference of the volume from that of the given lumen; above it: InvalidError", 0.1)
+    ]
+    allow_dropped: Annotated[
+        bool,
+        Option(
+            "Warn instead of failing when repairs drop more than 2 radii of a vessel, or extend a tip by more than its length",
+            False,
+        ),
+    ]
+
+
 class RunOptions(TypedDict, total=False):
     """Run"""
 
@@ -47,11 +70,6 @@ class RunOptions(TypedDict, total=False):
     ]
     frozen_joints: Annotated[bool, Option("Skip smoothing of woven joints", False)]
     refined: Annotated[StrPath | None, Option("VTP file to which the refined network is written")]
-    max_displacement: Annotated[
-        float | None,
-        Option("Maximum distance of the meshed axis from the given one, in radii; above it the result is an InvalidError"),
-    ]
-    allow_displaced: Annotated[bool, Option("Warn instead of failing when the axis exceeds max_displacement", False)]
     dump_dir: Annotated[StrPath | None, Option("Folder for the inputs of blocks that fail")]
     data: Annotated[
         str | Sequence[str] | None,

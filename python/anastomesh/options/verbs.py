@@ -12,7 +12,7 @@ from .preparation import PreparationOptions
 from .reading import ReadingOptions
 from .refinement import IterationOptions, RefinementOptions
 from .resolution import ResolutionOptions
-from .run import RootOptions, RunOptions, WorkOptions
+from .run import FidelityOptions, RootOptions, RunOptions, WorkOptions
 
 
 class MeshOptions(
@@ -23,6 +23,7 @@ class MeshOptions(
     FlowOptions,
     PreparationOptions,
     RefinementOptions,
+    FidelityOptions,
     RunOptions,
     WorkOptions,
     PageOptions,
@@ -69,6 +70,7 @@ class RefineOptions(
     IterationOptions,
     RefinementOptions,
     PreparationOptions,
+    FidelityOptions,
     PageOptions,
     ThreadOptions,
     ConfigOptions,

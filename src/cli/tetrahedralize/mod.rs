@@ -16,7 +16,9 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::common;
+use super::common::Common;
 use super::exit::{Exit, Failure};
+use super::fidelity::conclude;
 use super::log;
 use super::stop::Stop;
 use crate::report::page::{self, Mark, Section};
@@ -24,6 +26,7 @@ use crate::report::rows::row;
 use crate::report::tetrahedralize::{
     BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
 };
+use crate::report::verdict::Verdict;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
@@ -89,7 +92,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     report.stages = watch.stages();
     report.peak_memory = common::peak_memory();
     print(args, &plan, &report)?;
-    Ok(if report.bounds_met() { Exit::Fine } else { Exit::GateNotMet })
+    let common = Common { quiet: plan.quiet, ..args.common };
+    Ok(conclude(&common, &report.verdict(plan.check_only)))
 }
 
 /// Makes the mesh; `None` if the input is only checked.
@@ -111,11 +115,8 @@ fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetr
 
 /// Writes the HTML report.
 fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh) -> Result<(), Failure> {
-    let verdict = if report.bounds_met() {
-        (Mark::Good, "all input triangles are faces or unions of faces".into())
-    } else {
-        (Mark::Bad, "a bound is violated".into())
-    };
+    let Verdict { is_good, text } = report.verdict(plan.check_only);
+    let verdict = (if is_good { Mark::Good } else { Mark::Bad }, text);
     args.report.write(&args.input, Some(verdict), plan, |page| {
         page.add(Section::new("Summary").folded("Terminal output", &report.text(true, &common::ended(&[]))));
         page.add(Section::new("Overview").pictures(&page::mesh_pictures(mesh)?, false)?);
@@ -207,12 +208,11 @@ fn print(args: &Args, plan: &TetPlan, report: &TetReport) -> Result<(), Failure>
             let InputSize { points, triangles, segments, .. } = report.input;
             let counts = [(points, "point"), (triangles, "triangle"), (segments, "additional segment")];
             let input = row("input", &counts.map(|(count, what)| counted(count, what)).join(", "));
-            log::result(&format!("{input}{}no fault found", ended.rows(&report.stages)));
+            log::result(&format!("{input}{}", ended.rows(&report.stages)));
         }
         return Ok(());
     }
-    // A violated bound is an error, which --quiet does not suppress.
-    if !plan.quiet || !report.bounds_met() {
+    if !plan.quiet {
         log::result(&report.text(args.common.verbose, &ended));
     }
     Ok(())

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 
+use crate::cli::bar;
 use crate::cli::progress::{Lines, ProgressFormat, shows_bars, stage_bar};
 use crate::cli::stop::Stop;
 use crate::pipeline::StageTime;
@@ -92,7 +93,12 @@ pub struct Listener(pub Arc<Watch>, pub Stop);
 
 impl Progress for Listener {
     fn at(&self, stage: Stage, done: u64, total: u64) {
-        let Self(watch, _) = self;
+        let Self(watch, stop) = self;
+        if stop.is_asked() {
+            // The bar of a run that stops stays cleared.
+            bar::clear();
+            return;
+        }
         watch.enter(stage.name(), done, total);
         if let Ok(state) = watch.state.lock()
             && let Some(bar) = &state.bar

@@ -3,11 +3,31 @@
 use super::{FusedBlock, RunReport, ThinBlock};
 use crate::block::ThinLayers;
 use anastomesh_mesh::units::{counted, grouped, tetrahedra};
-use std::fmt;
+use anastomesh_network::NameOf;
+use std::fmt::{self, Write as _};
 
-/// Text report: blocks, retries, failures, sizes and times.
+/// Text report; nodes are named by their index in the file.
 impl fmt::Display for RunReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(&self.text(&|node| node.to_string()))
+    }
+}
+
+/// Names of nodes, with blanks between them.
+pub fn named(nodes: &[u32], name: NameOf) -> String {
+    nodes.iter().map(|&node| name(node)).collect::<Vec<_>>().join(" ")
+}
+
+impl RunReport {
+    /// Text report: blocks, retries, failures, sizes and times. `name` names a node, given by its index in the file.
+    pub fn text(&self, name: NameOf) -> String {
+        let mut out = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write(name, &mut out);
+        out
+    }
+
+    fn write(&self, name: NameOf, out: &mut String) -> fmt::Result {
         let (b, m) = (&self.blocks, &self.mesh);
         writeln!(
             out,
@@ -19,10 +39,18 @@ impl fmt::Display for RunReport {
             grouped(self.failed.len())
         )?;
         for retry in &self.retries {
-            writeln!(out, "  retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy)?;
+            writeln!(
+                out,
+                "  retried {} (nodes {}): {}; {}",
+                retry.block,
+                named(&retry.nodes, name),
+                retry.reason,
+                retry.remedy
+            )?;
         }
         for f in &self.fused {
-            writeln!(out, "  overlapping vessels in {} (nodes {:?}): {}", f.block, f.nodes, f.difference())?;
+            let nodes = named(&f.nodes, name);
+            writeln!(out, "  overlapping vessels in {} (nodes {nodes}): {}", f.block, f.difference(name))?;
             if let Some(at) = f.astray.outside {
                 writeln!(out, "    a vessel axis lies outside the wall at {:.4} {:.4} {:.4}", at.x, at.y, at.z)?;
             }
@@ -40,15 +68,16 @@ impl fmt::Display for RunReport {
         for f in &self.filled {
             writeln!(
                 out,
-                "  {} filled by the lumen in {} (nodes {:?}): counted as closed",
+                "  {} filled by the lumen in {} (nodes {}): counted as closed",
                 counted(f.loops.unsigned_abs() as usize, "loop"),
                 f.block,
-                f.nodes
+                named(&f.nodes, name)
             )?;
         }
-        self.write_thin_layers(out)?;
+        self.write_thin_layers(name, out)?;
         for failed in &self.failed {
-            writeln!(out, "  FAILED {} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason)?;
+            let nodes = named(&failed.nodes, name);
+            writeln!(out, "  FAILED {} (nodes {nodes}): {}", failed.block, failed.reason)?;
             if let Some(dump) = &failed.dump {
                 writeln!(out, "    input written to {dump}")?;
             }
@@ -65,14 +94,14 @@ impl fmt::Display for RunReport {
 
 impl FusedBlock {
     /// Difference between the wall of the block and its skeleton.
-    pub(crate) fn difference(&self) -> String {
+    pub(crate) fn difference(&self, name: NameOf) -> String {
         let mut parts = Vec::new();
         if self.handles != self.loops {
             let count = |n: i64, what| counted(n.unsigned_abs() as usize, what);
             parts.push(format!("expected {}, found {}", count(self.loops, "loop"), count(self.handles, "handle")));
         }
         if !self.uncapped.is_empty() {
-            parts.push(format!("terminals without a cap {:?}", self.uncapped));
+            parts.push(format!("terminals without a cap: {}", named(&self.uncapped, name)));
         }
         if parts.is_empty() { "the genus is as expected".into() } else { parts.join("; ") }
     }
@@ -82,7 +111,7 @@ impl RunReport {
     /// Maximum number of listed blocks with thin layers.
     const THIN: usize = 3;
 
-    fn write_thin_layers(&self, out: &mut fmt::Formatter) -> fmt::Result {
+    fn write_thin_layers(&self, name: NameOf, out: &mut String) -> fmt::Result {
         let all = &self.thin_layers;
         if all.is_empty() {
             return Ok(());
@@ -98,7 +127,8 @@ impl RunReport {
         for ThinBlock { block, nodes, layers } in all.iter().take(Self::THIN) {
             let [x, y, z] = layers.at;
             let share = 100.0 * layers.share;
-            writeln!(out, "    {block} (nodes {nodes:?}): {share:.1} % at {x:.4} {y:.4} {z:.4}")?;
+            let nodes = named(nodes, name);
+            writeln!(out, "    {block} (nodes {nodes}): {share:.1} % at {x:.4} {y:.4} {z:.4}")?;
         }
         Ok(())
     }

@@ -4,10 +4,11 @@ use super::figures::{LengthUnit, figure};
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use super::shape::bars;
-use crate::pipeline::RunReport;
+use crate::pipeline::{RunReport, named};
 use crate::report::plot::Panel;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::units::{counted, grouped};
+use anastomesh_network::NameOf;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -49,8 +50,8 @@ pub fn failed_blocks(network: &Skeleton, run: &RunReport, unit: LengthUnit) -> i
     Section::new("Failed blocks").pictures(&[picture], false)
 }
 
-/// Section on blocks, stages, retries and failures.
-pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
+/// Section on blocks, stages, retries and failures; the stages are those of all passes over the network.
+pub fn run(run: &RunReport, sizes: &[u64], name: NameOf) -> Section {
     let (blocks, times) = (&run.blocks, &run.block_times);
     let seconds: f64 = run.stages.iter().map(|stage| stage.seconds).sum();
     let stages: Vec<Vec<String>> =
@@ -71,7 +72,7 @@ pub fn run(run: &RunReport, sizes: &[u64]) -> Section {
             powers("Times of blocks", "milliseconds (log₂)", &times.histogram, -1.0),
         ])
         .table(&["stage", "wall time"], &stages);
-    let trouble = trouble(run);
+    let trouble = trouble(run, name);
     if trouble.is_empty() { section } else { section.list(&trouble) }
 }
 
@@ -84,21 +85,23 @@ fn powers(title: &str, axis: &str, counts: &[u64], first: f64) -> Panel {
     panel
 }
 
-fn trouble(run: &RunReport) -> Vec<(Mark, String)> {
+fn trouble(run: &RunReport, name: NameOf) -> Vec<(Mark, String)> {
     let mut items = Vec::new();
     for failed in &run.failed {
-        let mut text = format!("{} (nodes {:?}): {}", failed.block, failed.nodes, failed.reason);
+        let mut text = format!("{} (nodes {}): {}", failed.block, named(&failed.nodes, name), failed.reason);
         if let Some(dump) = &failed.dump {
             let _ = write!(text, "; input written to {dump}");
         }
         items.push((Mark::Bad, text));
     }
     for fused in run.fused.iter().take(LISTED) {
-        let text = format!("overlapping vessels in {} (nodes {:?}): {}", fused.block, fused.nodes, fused.difference());
+        let (nodes, difference) = (named(&fused.nodes, name), fused.difference(name));
+        let text = format!("overlapping vessels in {} (nodes {nodes}): {difference}", fused.block);
         items.push((Mark::Bad, text));
     }
     for retry in run.retries.iter().take(LISTED) {
-        let text = format!("retried {} (nodes {:?}): {}; {}", retry.block, retry.nodes, retry.reason, retry.remedy);
+        let nodes = named(&retry.nodes, name);
+        let text = format!("retried {} (nodes {nodes}): {}; {}", retry.block, retry.reason, retry.remedy);
         items.push((Mark::Neither, text));
     }
     let hidden = run.retries.len().saturating_sub(LISTED) + run.fused.len().saturating_sub(LISTED);

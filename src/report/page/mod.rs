@@ -15,7 +15,7 @@ mod validity;
 pub use blocks::{block_sizes, failed_blocks, run};
 pub use figures::LengthUnit;
 pub use html::{Mark, Page, Section};
-pub use network::{overlaps_left, refinement};
+pub use network::{of_refinement, refinement};
 pub use patches::{named_patches, terminals};
 pub use pictures::{mesh_pictures, network_picture};
 pub use shape::{fidelity, quality};

@@ -4,17 +4,15 @@ use super::figures::LengthUnit;
 use super::html::{Mark, Section};
 use super::pictures::network_picture;
 use crate::report::refine::panels;
+use crate::report::verdict::Verdict;
 use anastomesh_mesh::units::{counted, grouped};
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use std::io;
 
 /// Verdict of a refinement for the page header.
-pub fn overlaps_left(report: &RefineReport) -> (Mark, String) {
-    match report.result.overlaps {
-        0 => (Mark::Good, "no vessels overlap".into()),
-        n => (Mark::Bad, format!("{} of edges overlap", counted(n, "pair"))),
-    }
+pub fn of_refinement(verdict: &Verdict) -> (Mark, String) {
+    (if verdict.is_good { Mark::Good } else { Mark::Bad }, verdict.text.clone())
 }
 
 /// Edges whose vessels overlap others.

@@ -2,10 +2,11 @@
 
 use super::figures::{figure, relative};
 use super::html::Section;
-use crate::fidelity::{Along, Fidelity};
+use crate::fidelity::{Along, Changes, Fidelity};
 use crate::report::plot::{Panel, Series};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
+use anastomesh_network::NameOf;
 
 /// Histograms of radius ratios (Fig. 8 of the paper) and dihedral angles.
 pub fn quality(quality: &TetQuality, dihedral: &DihedralHistogram) -> Section {
@@ -47,7 +48,7 @@ pub(super) fn bars(title: &str, axes: [&str; 2], width: f64, counts: impl Iterat
 }
 
 /// Fidelity of the mesh to the network: axis, wall along the vessels, lumen.
-pub fn fidelity(fidelity: &Fidelity, along: &Along) -> Section {
+pub fn fidelity(fidelity: &Fidelity, along: &Along, changes: &Changes, name: NameOf) -> Section {
     let line = |label: &str, k: usize| Series {
         label: label.into(),
         points: along.bins.iter().filter_map(|bin| Some([bin.share, 100.0 * bin.quantiles?[k]])).collect(),
@@ -70,5 +71,5 @@ pub fn fidelity(fidelity: &Fidelity, along: &Along) -> Section {
         tiles.push(("radius error, 99th percentile", format!("{} %", figure(100.0 * wall.p99))));
     }
     tiles.push(("volume relative to the network", format!("{:+.2} %", 100.0 * fidelity.swelling())));
-    Section::new("Accuracy against the network").tiles(&tiles).plots(&[plot])
+    Section::new("Accuracy against the network").tiles(&tiles).text(&changes.text(name)).plots(&[plot])
 }

@@ -3,8 +3,9 @@
 use super::figures::{LengthUnit, figure};
 use super::html::{Mark, Section};
 use super::pictures::offenders;
-use anastomesh_mesh::check::text::{describe, reason, verdict, violation};
-use anastomesh_mesh::check::{CheckReport, Outcome, Verdict};
+use crate::report::verdict::Verdict;
+use anastomesh_mesh::check::text::{describe, reason, violation};
+use anastomesh_mesh::check::{CheckReport, Outcome, Verdict as Validity};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::units::grouped;
 use std::io;
@@ -13,13 +14,13 @@ use std::io;
 const LISTED: usize = 3;
 
 /// Verdict for the page header.
-pub fn headline(check: &CheckReport) -> (Mark, String) {
-    let mark = match check.verdict {
-        Verdict::Valid => Mark::Good,
-        Verdict::NoFaultFound => Mark::Neither,
-        Verdict::Invalid => Mark::Bad,
+pub fn headline(check: &CheckReport, verdict: &Verdict) -> (Mark, String) {
+    let mark = match (verdict.is_good, check.verdict) {
+        (false, _) | (_, Validity::Invalid) => Mark::Bad,
+        (true, Validity::NoFaultFound) => Mark::Neither,
+        (true, Validity::Valid) => Mark::Good,
     };
-    (mark, verdict(check.verdict).to_owned())
+    (mark, verdict.text.clone())
 }
 
 /// Sizes of the checked mesh.

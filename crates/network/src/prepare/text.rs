@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{PrepareReport, RadiusDefect, Size, SpurReason, TouchedBy, TouchingTip};
+use crate::names::NameOf;
 use anastomesh_mesh::units::{counted, digits, grouped};
 
 /// Row of the table of sizes.
@@ -14,33 +15,38 @@ const LISTED: usize = 20;
 const SPELT_OUT: usize = 3;
 
 impl PrepareReport {
-    /// Text report: up to 3 cases of each cure; with `all`, up to 20 and a table of sizes.
-    pub fn text(&self, all: bool) -> String {
+    /// Text report: up to 3 cases of each cure; with `all`, up to 20 and a table of sizes. `name` names a node, given by its
+    /// index in the input.
+    pub fn text(&self, all: bool, name: NameOf) -> String {
         let mut out = Lists { text: String::new(), listed: if all { LISTED } else { SPELT_OUT } };
         let filled = self.radii.iter().map(|r| {
             let was = r.given.map_or_else(|| "missing".into(), |g| format!("{g:.4}"));
             let why = if r.fault == RadiusDefect::Absurd { " (differs tenfold from its neighbours)" } else { "" };
-            format!("node {}: {was}, now {:.4}{why}", r.node, r.filled)
+            format!("node {}: {was}, now {:.4}{why}", name(r.node), r.filled)
         });
         out.list(["radius", "radii"], "interpolated from neighbours (--keep-radii)", filled);
         for change in self.cleaned.changes() {
             let _ = writeln!(out.text, "{change}");
         }
-        merged(self, &mut out);
+        merged(self, name, &mut out);
         let spurs = self.spurs.iter().map(|s| {
             let why = match s.reason {
                 SpurReason::Short => "not longer than the radius of its vessel",
                 SpurReason::Inside => "the tip lies inside its vessel",
             };
-            format!("tip {} from node {}: length {:.4}, radius {:.4}: {why}", s.tip, s.from, s.length, s.radius)
+            let [tip, from] = [s.tip, s.from].map(name);
+            format!("tip {tip} from node {from}: length {:.4}, radius {:.4}: {why}", s.length, s.radius)
         });
         out.list(["spur", "spurs"], "removed (--keep-spurs)", spurs);
         let joined = self.joined.nodes.iter().map(|j| {
-            format!("node {} into node {}: distance {:.4}, radius {:.4}", j.node, j.into, j.distance, j.radius)
+            let [node, into] = [j.node, j.into].map(name);
+            format!("node {node} into node {into}: distance {:.4}, radius {:.4}", j.distance, j.radius)
         });
         out.list(["bifurcation", "bifurcations"], "joined within one lumen (--keep-joints)", joined);
-        let loops =
-            self.joined.loops.iter().map(|l| format!("nodes {} to {}: length {:.4}", l.nodes[0], l.nodes[1], l.length));
+        let loops = self.joined.loops.iter().map(|l| {
+            let [a, b] = l.nodes.map(name);
+            format!("nodes {a} to {b}: length {:.4}", l.length)
+        });
         out.list(["loop", "loops"], "closed within one lumen (--keep-joints)", loops);
         let short = self.short_tips.iter().map(|t| {
             let needed = digits(t.needed);
@@ -49,14 +55,14 @@ impl PrepareReport {
             } else {
                 format!("removed, as its cap needs length {needed}")
             };
-            format!("tip {} from node {}: length {}: {done}", t.tip, t.from, digits(t.length))
+            format!("tip {} from node {}: length {}: {done}", name(t.tip), name(t.from), digits(t.length))
         });
         out.list(["tip", "tips"], "too close to a bifurcation for a cap (--keep-short-tips)", short);
-        out.touching(&self.touching);
+        out.touching(&self.touching, name);
         let islands = self
             .islands
             .iter()
-            .map(|i| format!("at node {}: {}, length {:.4}", i.node, counted(i.nodes, "node"), i.length));
+            .map(|i| format!("at node {}: {}, length {:.4}", name(i.node), counted(i.nodes, "node"), i.length));
         out.list(["component", "components"], "removed (--drop-islands)", islands);
         let r = &self.resample;
         if r.before > 0 {
@@ -76,10 +82,10 @@ impl PrepareReport {
     }
 }
 
-/// Text on tips that touch another vessel.
-pub fn touching_text(tips: &[TouchingTip]) -> String {
+/// Text on tips that touch another vessel. `name` names a node, given by its index in the input.
+pub fn touching_text(tips: &[TouchingTip], name: NameOf) -> String {
     let mut out = Lists { text: String::new(), listed: SPELT_OUT };
-    out.touching(tips);
+    out.touching(tips, name);
     out.text
 }
 
@@ -107,7 +113,7 @@ impl Lists {
         }
     }
 
-    fn touching(&mut self, tips: &[TouchingTip]) {
+    fn touching(&mut self, tips: &[TouchingTip], name: NameOf) {
         let tips = tips.iter().map(|t| {
             let done = match t.done {
                 TouchedBy::Retracted { by } => format!("shortened by {by:.4}"),
@@ -115,24 +121,29 @@ impl Lists {
                 TouchedBy::Removed => "removed, as its vessel is too short for a cap".into(),
                 TouchedBy::Left => "kept, as its vessel runs along the other".into(),
             };
-            format!("tip {} at edge {}-{}: {done}", t.tip, t.with[0], t.with[1])
+            let [a, b] = t.with.map(name);
+            format!("tip {} at edge {a}-{b}: {done}", name(t.tip))
         });
         self.list(["tip", "tips"], "touching another vessel (--touching)", tips);
     }
 }
 
-fn merged(report: &PrepareReport, out: &mut Lists) {
-    let met = report.merge.met.iter().map(|[a, b]| format!("nodes {a} and {b}"));
+fn merged(report: &PrepareReport, name: NameOf, out: &mut Lists) {
+    let met = report.merge.met.iter().map(|ends| {
+        let [a, b] = ends.map(name);
+        format!("nodes {a} and {b}")
+    });
     out.list(["pair", "pairs"], "of coincident tips joined (--keep-doubles)", met);
     let stretches = report.merge.merged.iter().map(|m| {
         let partings: String = m
             .partings
             .iter()
-            .map(|p| format!("; leaves at node {}, exits the vessel at node {}", p.branches, p.leaves))
+            .map(|p| format!("; leaves at node {}, exits the vessel at node {}", name(p.branches), name(p.leaves)))
             .collect();
+        let ([a, b], [c, d]) = (m.nodes.map(name), m.with.map(name));
         format!(
-            "nodes {} to {} along edge {}-{}: length {:.4}, max distance {:.3} radii{partings}",
-            m.nodes[0], m.nodes[1], m.with[0], m.with[1], m.length, m.apart
+            "nodes {a} to {b} along edge {c}-{d}: length {:.4}, max distance {:.3} radii{partings}",
+            m.length, m.apart
         )
     });
     out.list(["duplicate segment", "duplicate segments"], "merged (--keep-doubles)", stretches);

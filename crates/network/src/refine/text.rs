@@ -3,6 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use super::{Figures, RefineReport, Treatment};
+use crate::names::NameOf;
 use anastomesh_mesh::units::{counted, grouped};
 
 /// Row of the table of figures: its name and its text for one state.
@@ -11,14 +12,14 @@ type Row = (&'static str, fn(&Figures) -> String);
 /// Maximum number of listed pairs.
 const LISTED: usize = 50;
 
-/// Summary and table of figures.
+/// Summary and table of figures; nodes are named by their index in the input.
 impl fmt::Display for RefineReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&text(self))
+        f.write_str(&self.text(&|node| node.to_string()))
     }
 }
 
-fn text(report: &RefineReport) -> String {
+fn text(report: &RefineReport, name: NameOf) -> String {
     let mut out = String::new();
     let d = &report.displacement;
     // Writing to a string cannot fail.
@@ -60,12 +61,17 @@ fn text(report: &RefineReport) -> String {
     if !report.worse.is_empty() {
         let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", report.worse_names());
     }
-    report.write_crowded(LISTED, &mut out);
-    report.write_residual(LISTED, &mut out);
+    report.write_crowded(LISTED, name, &mut out);
+    report.write_residual(LISTED, name, &mut out);
     out
 }
 
 impl RefineReport {
+    /// Summary and table of figures. `name` names a node, given by its index in the input.
+    pub fn text(&self, name: NameOf) -> String {
+        text(self, name)
+    }
+
     /// Names of the metrics that are worse than in the input, with commas between them.
     pub fn worse_names(&self) -> String {
         self.worse.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
@@ -94,13 +100,13 @@ impl RefineReport {
     }
 
     /// Appends the pairs of terminals that are too close to each other, at most `listed` of them one by one.
-    pub fn write_crowded(&self, listed: usize, out: &mut String) {
+    pub fn write_crowded(&self, listed: usize, name: NameOf, out: &mut String) {
         if self.crowded.is_empty() {
             return;
         }
         let _ = writeln!(out, "{} too close for two caps", counted(self.crowded.len(), "terminal pair"));
         for pair in self.crowded.iter().take(listed) {
-            let [a, b] = pair.nodes;
+            let [a, b] = pair.nodes.map(name);
             let done = match (pair.resolved, pair.moved) {
                 (false, _) => "kept; the mesh will lack a cap (--crowded-terminals part or merge)".into(),
                 (true, [a, b]) if a + b == 0.0 => "merged".into(),
@@ -116,7 +122,7 @@ impl RefineReport {
     }
 
     /// Appends the overlaps that remain, at most `listed` of them one by one.
-    pub fn write_residual(&self, listed: usize, out: &mut String) {
+    pub fn write_residual(&self, listed: usize, name: NameOf, out: &mut String) {
         let r = &self.residual;
         if r.pairs.is_empty() {
             out.push_str("no vessels overlap\n");
@@ -131,7 +137,7 @@ impl RefineReport {
             counted(r.left, "overlapping pair")
         );
         for pair in r.pairs.iter().take(listed) {
-            let [[a, b], [c, d]] = pair.edges;
+            let [[a, b], [c, d]] = pair.edges.map(|ends| ends.map(name));
             let done = match pair.treatment {
                 Treatment::Shrunk { kept } => format!("shrunk to {:.0} %", 100.0 * kept),
                 Treatment::Cleared => "resolved by other changes".into(),

@@ -18,10 +18,43 @@ const OUTSIDE: u32 = 1 << 30;
 const MARKS: u32 = INSIDE | OUTSIDE;
 
 /// A face of the cavity's boundary: the half-face outside, and its vertices counter-clockwise seen from inside.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct CavityFace {
     outer: u32,
     face: [u32; 3],
+}
+
+/// A stack that pushes without a branch.
+#[derive(Debug, Default)]
+struct Stack<T> {
+    /// The entries, and unused ones behind them.
+    items: Vec<T>,
+    len: usize,
+}
+
+impl<T: Copy + Default> Stack<T> {
+    fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes space for further entries.
+    #[inline]
+    fn reserve(&mut self, more: usize) {
+        if self.len + more >= self.items.len() {
+            self.items.resize(2 * (self.len + more), T::default());
+        }
+    }
+
+    /// Adds an entry if `wanted`; there must be space for it.
+    #[inline]
+    fn push_if(&mut self, item: T, wanted: bool) {
+        self.items[self.len] = item;
+        self.len += usize::from(wanted);
+    }
+
+    fn entries(&self) -> &[T] {
+        &self.items[..self.len]
+    }
 }
 
 /// The growing tetrahedralization and the insertion buffers. The ghost vertex and its site follow the last point.
@@ -32,8 +65,8 @@ pub(super) struct Inserter {
     bounds: Bounds,
     ghost: u32,
     now: u32,
-    cavity: Vec<u32>,
-    walls: Vec<CavityFace>,
+    cavity: Stack<u32>,
+    walls: Stack<CavityFace>,
     created: Vec<u32>,
     table: Box<[u32; TABLE * TABLE]>,
     pairs: FxHashMap<(u32, u32), u32>,
@@ -54,8 +87,8 @@ impl Inserter {
             bounds: Bounds::of(points),
             ghost: n as u32,
             now: 0,
-            cavity: Vec::new(),
-            walls: Vec::new(),
+            cavity: Stack::default(),
+            walls: Stack::default(),
             created: Vec::new(),
             table: Box::new([NONE; TABLE * TABLE]),
             pairs: FxHashMap::default(),
@@ -188,30 +221,32 @@ impl Inserter {
     fn dig(&mut self, first: u32, p: &Point3) {
         self.cavity.clear();
         self.walls.clear();
+        self.cavity.reserve(1);
         self.cells[first as usize].verts[0] |= INSIDE;
-        self.cavity.push(first);
+        self.cavity.push_if(first, true);
         let mut head = 0;
-        while let Some(&t) = self.cavity.get(head) {
-            head += 1;
-            let mut cell = *self.cell(t);
+        while head < self.cavity.len {
+            let mut cell = *self.cell(self.cavity.items[head]);
             cell.verts[0] &= !MARKS;
+            head += 1;
+            // The answers cannot be predicted: both stacks are written, and one of them grows.
+            self.cavity.reserve(4);
+            self.walls.reserve(4);
+            // All neighbours are fetched before the first is tested. They differ: cells share at most one face.
+            let marks = cell.mates.map(|mate| self.cell(mate >> 2).verts[0] & MARKS);
             for i in 0..4 {
-                let outer = cell.mates[i];
-                let n = outer >> 2;
-                let next = self.cell(n);
-                let marks = next.verts[0] & MARKS;
-                if marks == INSIDE {
+                if marks[i] == INSIDE {
                     continue;
                 }
-                if marks == 0 {
-                    let inside = self.in_conflict(next, p);
-                    self.cells[n as usize].verts[0] |= if inside { INSIDE } else { OUTSIDE };
-                    if inside {
-                        self.cavity.push(n);
-                        continue;
-                    }
+                let outer = cell.mates[i];
+                let n = outer >> 2;
+                let mut inside = false;
+                if marks[i] == 0 {
+                    inside = self.in_conflict(self.cell(n), p);
+                    self.cells[n as usize].verts[0] |= OUTSIDE << u32::from(inside);
+                    self.cavity.push_if(n, inside);
                 }
-                self.walls.push(CavityFace { outer, face: BACK[i].map(|k| cell.verts[k]) });
+                self.walls.push_if(CavityFace { outer, face: BACK[i].map(|k| cell.verts[k]) }, !inside);
             }
         }
     }
@@ -232,8 +267,9 @@ impl Inserter {
 
     /// Finds a slot for each face, first those of the cavity.
     fn take_slots(&mut self) {
-        let needed = self.walls.len();
-        std::mem::swap(&mut self.cavity, &mut self.created);
+        let needed = self.walls.len;
+        self.created.clear();
+        self.created.extend_from_slice(self.cavity.entries());
         while self.created.len() > needed {
             self.free.extend(self.created.pop());
         }
@@ -250,7 +286,7 @@ impl Inserter {
     #[inline(never)]
     fn number_vertices(&mut self) -> usize {
         let mut count = 0u32;
-        for w in &self.walls {
+        for w in self.walls.entries() {
             for x in w.face {
                 let site = &mut self.sites[x as usize];
                 if site.stamp != self.now {
@@ -266,7 +302,7 @@ impl Inserter {
     /// Builds a tetrahedron on each face and connects them. Each edge of the boundary occurs once in each direction.
     #[inline(never)]
     fn stand_by_table(&mut self, v: u32) {
-        for (w, &t) in self.walls.iter().zip(&self.created) {
+        for (w, &t) in self.walls.entries().iter().zip(&self.created) {
             let l = w.face.map(|x| self.sites[x as usize].local as usize);
             let turn = turn_of(&w.face, self.ghost);
             for i in 0..3 {
@@ -274,7 +310,7 @@ impl Inserter {
                 self.table[(from * TABLE + to) % (TABLE * TABLE)] = 4 * t + turn[i];
             }
         }
-        for (w, &t) in self.walls.iter().zip(&self.created) {
+        for (w, &t) in self.walls.entries().iter().zip(&self.created) {
             let l = w.face.map(|x| self.sites[x as usize].local as usize);
             let turn = turn_of(&w.face, self.ghost);
             let mate = |i: usize| {
@@ -294,13 +330,13 @@ impl Inserter {
     fn stand_by_hash(&mut self, v: u32) {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
-        for (w, &t) in self.walls.iter().zip(&self.created) {
+        for (w, &t) in self.walls.entries().iter().zip(&self.created) {
             let turn = turn_of(&w.face, self.ghost);
             for i in 0..3 {
                 pairs.insert((w.face[(i + 1) % 3], w.face[(i + 2) % 3]), 4 * t + turn[i]);
             }
         }
-        for (w, &t) in self.walls.iter().zip(&self.created) {
+        for (w, &t) in self.walls.entries().iter().zip(&self.created) {
             let turn = turn_of(&w.face, self.ghost);
             let mates = [0, 1, 2]
                 .map(|i: usize| pairs.get(&(w.face[(i + 2) % 3], w.face[(i + 1) % 3])).copied().unwrap_or(NONE));
@@ -330,24 +366,18 @@ impl Inserter {
         (cells, free)
     }
 
-    /// Returns the tetrahedra over the points in original order, with vertex `v` renamed to `order[v]`, the empty
-    /// slots, and a tetrahedron at each point.
-    pub(super) fn finish(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
+    /// Returns the tetrahedra with ghosts, the empty slots, and a tetrahedron at each vertex.
+    pub(super) fn finish(self) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
         let Self { mut cells, free, ghost, .. } = self.without_past();
-        let mut own = vec![NONE; order.len()];
+        let mut vertex_tet = vec![NONE; ghost as usize];
         for (t, cell) in (0..).zip(&mut cells) {
             for v in &mut cell.verts {
                 if *v == ghost {
                     *v = GHOST;
-                } else if let Some(&new) = order.get(*v as usize) {
-                    own[*v as usize] = t;
-                    *v = new;
+                } else if let Some(own) = vertex_tet.get_mut(*v as usize) {
+                    *own = t;
                 }
             }
-        }
-        let mut vertex_tet = vec![NONE; order.len()];
-        for (&new, &t) in order.iter().zip(&own) {
-            vertex_tet[new as usize] = t;
         }
         (cells, free, vertex_tet)
     }

@@ -9,6 +9,7 @@ mod conflict;
 mod insert;
 mod merge;
 mod order;
+mod ordered;
 mod parallel;
 mod perturb;
 mod sequence;
@@ -20,6 +21,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::in_exact_range;
 use order::brio;
 pub(super) use order::hash;
+use ordered::Ordered;
 use sequence::insert_all;
 
 /// Computes the Delaunay tetrahedralization of points, with ghosts around the hull. Vertices are numbered like points.
@@ -35,16 +37,24 @@ pub fn delaunay(points: &[Point3]) -> Result<Complex, TetError> {
 /// # Errors
 /// As [`delaunay`]; [`TetError::Cancelled`] if the watch cancels.
 pub(super) fn delaunay_watched(points: &[Point3], watch: &Watch) -> Result<Complex, TetError> {
+    Ok(delaunay_ordered(points, watch)?.into_complex(points))
+}
+
+/// As [`delaunay_watched`], in the order of insertion.
+///
+/// # Errors
+/// As [`delaunay_watched`].
+pub(super) fn delaunay_ordered(points: &[Point3], watch: &Watch) -> Result<Ordered, TetError> {
     validate(points)?;
     if points.len() >= parallel::SPLIT_FROM
-        && let Some((cells, vertex_tet)) = parallel::tetrahedralize(points, watch)
+        && let Some(made) = parallel::tetrahedralize(points, watch)
     {
-        return Ok(Complex::from_cells(points.to_vec(), cells, Vec::new(), vertex_tet));
+        return Ok(made);
     }
     let order = brio(points);
-    let inserter = insert_all(points, &order, watch)?;
-    let (cells, free, vertex_tet) = inserter.finish(&order);
-    Ok(Complex::from_cells(points.to_vec(), cells, free, vertex_tet))
+    let (cells, free, vertex_tet) = insert_all(points, &order, watch)?.finish();
+    let sorted = order.iter().map(|&i| points[i as usize]).collect();
+    Ok(Ordered { complex: Complex::from_cells(sorted, cells, free, vertex_tet), order })
 }
 
 fn validate(points: &[Point3]) -> Result<(), TetError> {

@@ -5,8 +5,9 @@
 use super::merge::{Cut, Half, compact, merge};
 use super::order::hash;
 use super::order::{brio_of_sorted, hilbert};
+use super::ordered::Ordered;
 use super::sequence::insert_all;
-use crate::complex::{Cell, GHOST, NONE};
+use crate::complex::{Cell, Complex, GHOST, NONE};
 use crate::progress::Watch;
 use anastomesh_mesh::geometry::Point3;
 use rayon::prelude::*;
@@ -22,24 +23,18 @@ const SAMPLE: usize = 16_000;
 /// sphere.
 const CROSSING: f64 = 0.45;
 
-/// Tetrahedralizes points in parts. Returns the tetrahedra with ghosts and without unused slots, and one tetrahedron at
-/// each point. Returns `None` if one piece is better, on errors, and if the watch cancels.
-pub(super) fn tetrahedralize(points: &[Point3], watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
+/// Tetrahedralizes points in parts. Returns `None` if one piece is better, on errors, and if the watch cancels.
+pub(super) fn tetrahedralize(points: &[Point3], watch: &Watch) -> Option<Ordered> {
     in_parts(points, SPLIT_FROM, watch)
 }
 
 /// As [`tetrahedralize`], with a bound on the size of parts.
-pub(super) fn in_parts(points: &[Point3], from: usize, watch: &Watch) -> Option<(Vec<Cell>, Vec<u32>)> {
+pub(super) fn in_parts(points: &[Point3], from: usize, watch: &Watch) -> Option<Ordered> {
     let order = hilbert(points);
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
-    let mut cells = split(&sorted, from, watch)?;
-    drop(sorted);
-    let mut vertex_tet = vec![NONE; points.len()];
-    for (&v, t) in order.iter().zip(vertex_tets(&cells, points.len())) {
-        vertex_tet[v as usize] = t;
-    }
-    rename(&mut cells, &order);
-    Some((cells, vertex_tet))
+    let cells = split(&sorted, from, watch)?;
+    let vertex_tet = vertex_tets(&cells, points.len());
+    Some(Ordered { complex: Complex::from_cells(sorted, cells, Vec::new(), vertex_tet), order })
 }
 
 fn rename(cells: &mut [Cell], names: &[u32]) {

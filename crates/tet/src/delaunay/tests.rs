@@ -170,10 +170,8 @@ fn parts_merge_to_the_whole() {
         let whole = delaunay(&points).unwrap();
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let (cells, vertex_tet) = pool
-                .install(|| parallel::in_parts(&points, points.len() / parts, &Watch::NOBODY))
-                .expect("worth while");
-            Complex::from_cells(points.clone(), cells, Vec::new(), vertex_tet)
+            let made = pool.install(|| parallel::in_parts(&points, points.len() / parts, &Watch::NOBODY));
+            made.expect("worth while").into_complex(&points)
         };
         let merged = run(1);
         merged.sanity_check().unwrap();

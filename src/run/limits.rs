@@ -1,0 +1,95 @@
+//! Limits on the difference between a mesh and its network.
+
+use super::defect::Defect;
+use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
+use anastomesh_skeleton::{Branch, NodeId, Skeleton};
+use rustc_hash::FxHashSet;
+
+/// Default limit of the displacement of a measured axis, in radii.
+pub(super) const MEASURED: f64 = 1.0;
+/// Default limit of the relative difference between the volume of a mesh and of the given lumen.
+pub(super) const LUMEN: f64 = 0.1;
+/// Maximum length of a vessel that a repair may drop, in its radii.
+const DROPPED: f64 = 2.0;
+/// Maximum distance of a cap beyond the given end of its vessel, in lengths of the vessel.
+const EXTENDED: f64 = 1.0;
+
+/// Limits on the difference between a mesh or a refined network and the given one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Limits {
+    /// Maximum displacement of the axis in radii, at any place. By default 1 in measured networks, at 99 % of the axis and
+    /// wherever no listed change requires more; without limit in others.
+    pub displacement: Option<f64>,
+    /// Maximum relative difference of the volume from that of the given lumen (default: 0.1).
+    pub lumen: Option<f64>,
+}
+
+anastomesh_mesh::setters!(Limits {
+    displacement: impl Into<Option<f64>>,
+    lumen: impl Into<Option<f64>>,
+});
+
+impl Limits {
+    /// Differences beyond the limits.
+    pub(crate) fn unfaithful(
+        self,
+        given: &Skeleton,
+        repairs: Repairs,
+        fidelity: &Fidelity,
+        changes: &Changes,
+    ) -> Vec<Defect> {
+        let mut defects = Vec::new();
+        let (excess, bound) = (fidelity.swelling(), self.lumen.unwrap_or(LUMEN));
+        if excess.abs() > bound {
+            defects.push(Defect::Lumen { excess, bound });
+        }
+        defects.extend(self.displaced(given, repairs, fidelity));
+        if let Some(vessels) = changes.dropped.filter(|change| change.worst > DROPPED) {
+            defects.push(Defect::Dropped { vessels, bound: DROPPED });
+        }
+        if let Some(tips) = changes.extended.filter(|change| change.worst > EXTENDED) {
+            defects.push(Defect::Extended { tips, bound: EXTENDED });
+        }
+        defects
+    }
+
+    /// Places where the axis is further from the given one than it may be.
+    fn displaced(self, given: &Skeleton, repairs: Repairs, fidelity: &Fidelity) -> Option<Defect> {
+        let usual = repairs.prepare.measured.then_some(MEASURED);
+        let bound = self.displacement.or(usual)?;
+        let excused = if self.displacement.is_none() { excused(given, repairs) } else { FxHashSet::default() };
+        let is_excused = |d: &Displaced| d.meshed.iter().chain(&d.given).any(|node| excused.contains(node));
+        let p99 = fidelity.axis.spread.p99;
+        let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound);
+        let all: Vec<Displaced> = far.copied().collect();
+        let unexcused: Vec<Displaced> = all.iter().filter(|d| !is_excused(d)).copied().collect();
+        match (unexcused.is_empty(), p99 > bound) {
+            (false, _) => Some(Defect::Displaced { bound, p99, places: unexcused }),
+            // A few places may be excused, but not one in a hundred.
+            (true, true) => Some(Defect::Displaced { bound, p99, places: all }),
+            (true, false) => None,
+        }
+    }
+}
+
+/// Nodes that a listed change may move far: overlaps that required it, nodes of many vessels, which are split, and vessels
+/// that a repair removed or whose end it moved.
+fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
+    let Repairs { prepare, refine } = repairs;
+    let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
+    let crowded = refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
+    let joined = prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
+    let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(joined).collect();
+    let adjacency = given.adjacency();
+    let name = |n: NodeId| given.node(n).original;
+    nodes.extend(given.node_ids().filter(|&n| adjacency.valence(n) > 3).map(name));
+    let touching = prepare.touching.iter().map(|t| t.tip);
+    let short = prepare.short_tips.iter().map(|t| t.tip);
+    let ends: FxHashSet<u32> = touching.chain(short).chain(prepare.spurs.iter().map(|s| s.tip)).collect();
+    let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
+    for branch in given.branches(&adjacency).list.iter().filter(cured) {
+        nodes.extend(branch.nodes.iter().map(|&n| name(n)));
+    }
+    nodes
+}
