@@ -43,6 +43,8 @@ mod partition;
 mod picture;
 mod pipeline;
 #[cfg(feature = "cli")]
+mod reduced;
+#[cfg(feature = "cli")]
 mod report;
 mod run;
 mod surface;

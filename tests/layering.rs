@@ -9,7 +9,7 @@ const PACKAGES: [&str; 6] =
     ["src", "crates/mesh/src", "crates/skeleton/src", "crates/network/src", "crates/tet/src", "crates/io/src"];
 
 /// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.
-const LAYERS: [(&str, u32); 12] = [
+const LAYERS: [(&str, u32); 13] = [
     ("main", 7),
     ("cli", 6),
     ("report", 5),
@@ -19,6 +19,7 @@ const LAYERS: [(&str, u32); 12] = [
     ("picture", 2),
     ("view", 2),
     ("block", 1),
+    ("reduced", 1),
     ("surface", 0),
     ("fidelity", 0),
     ("partition", 0),

@@ -142,6 +142,7 @@ fn help_is_a_screen_or_in_groups() {
         "refine",
         "dual",
         "generate",
+        "flow",
         "tetrahedralize",
         "convert",
         "render",

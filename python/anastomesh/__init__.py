@@ -10,7 +10,7 @@ from ._errors import BugError, Error, InputError, InvalidError, StageError, Stop
 from ._file_verbs import Picture, check, convert, render, view
 from ._mesh import Mesh, Patch
 from ._network import Network
-from ._network_verbs import dual, estimate, generate, info, mesh, mesh_shard, prepare, refine, surface
+from ._network_verbs import dual, estimate, flow, generate, info, mesh, mesh_shard, prepare, refine, surface
 from ._progress import Progress
 from ._report import CheckReport, Condition, Place
 from ._surface import Surface
@@ -44,6 +44,7 @@ __all__ = [
     "convert",
     "dual",
     "estimate",
+    "flow",
     "generate",
     "info",
     "mesh",

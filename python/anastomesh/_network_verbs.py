@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 from ._arrays import Column, Rows
 from ._foreign import has_lines
@@ -14,7 +17,16 @@ from ._progress import ProgressLike
 from ._run import Done, work_folder
 from ._surface import Surface
 from ._verb import Verb
-from .options import GenerateOptions, MeshOptions, NetworkOptions, PrepareOptions, RefineOptions, SurfaceOptions
+from .options import (
+    GenerateOptions,
+    MeshOptions,
+    NetworkFlowOptions,
+    NetworkOptions,
+    PrepareOptions,
+    RefineOptions,
+    StrPath,
+    SurfaceOptions,
+)
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -23,6 +35,7 @@ _MESH = Verb("mesh", MeshOptions)
 _ESTIMATE = Verb("mesh", MeshOptions, mode="--dry-run")
 _SHARD = Verb("mesh", MeshOptions)
 _SURFACE = Verb("surface", SurfaceOptions)
+_FLOW = Verb("flow", NetworkFlowOptions)
 _PREPARE = Verb("prepare", PrepareOptions)
 _REFINE = Verb("refine", RefineOptions)
 _DUAL = Verb("dual", NetworkOptions, progress=False)
@@ -51,7 +64,7 @@ def mesh(
     with work_folder() as folder:
         given = _given(network, edges, radii)
         out = os.path.join(folder, "mesh.npyd")
-        done = _run_mesh(_MESH, given, options, [f"--output={out}"], progress, folder)
+        done = _run_with_roots(_MESH, given, options, [f"--output={out}"], progress, folder)
         return done.made(Mesh._read(out, done.report) if os.path.isdir(out) else None)
 
 
@@ -70,7 +83,7 @@ def estimate(
     """
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
-        done = _run_mesh(_ESTIMATE, _given(network, edges, radii), options, [f"--output={out}"], progress, folder)
+        done = _run_with_roots(_ESTIMATE, _given(network, edges, radii), options, [f"--output={out}"], progress, folder)
         return done.ensure_success().report or {}
 
 
@@ -91,7 +104,7 @@ def mesh_shard(
     with work_folder() as folder:
         out = os.path.join(folder, "mesh.npyd")
         words = [f"--output={out}", f"--shard={shard[0]}/{shard[1]}"]
-        _run_mesh(_SHARD, _given(network, edges, radii), options, words, progress, folder).ensure_success()
+        _run_with_roots(_SHARD, _given(network, edges, radii), options, words, progress, folder).ensure_success()
 
 
 @_SURFACE.documents
@@ -113,6 +126,34 @@ def surface(
         out = os.path.join(folder, "wall.ply")
         done = _SURFACE.run([path, f"--output={out}"], options, progress, folder=folder)
         return done.made(Surface._read(out, done.report) if os.path.isfile(out) else None)
+
+
+@_FLOW.documents
+def flow(
+    network: NetworkLike | Rows,
+    edges: Rows | None = None,
+    radii: Column | None = None,
+    *,
+    output: StrPath | None = None,
+    progress: ProgressLike = None,
+    **options: Unpack[NetworkFlowOptions],
+) -> dict[str, Any]:
+    """Solves for the one-dimensional flow through a network: Poiseuille flow in cones, with conserved flow at nodes.
+
+    The network is given as in :func:`mesh`. With ``result``, the three-dimensional result of a solver is mapped onto the vessels
+    and compared with the one-dimensional solution. The result holds a summary, and the table of vessels in ``table``: a numpy
+    array for each column. ``output`` also writes a file: .json (model for svZeroDSolver), .in (svOneDSolver), .vtp or .csv.
+    """
+    with work_folder() as folder:
+        given = _given(network, edges, radii)
+        table = os.path.join(folder, "flow.csv")
+        done = _run_with_roots(_FLOW, given, options, [f"--output={table}"], progress, folder)
+        report = dict(done.ensure_success().report or {})
+        report["table"] = _columns(table)
+        if output is not None:
+            words = [f"--output={os.fspath(output)}"]
+            _run_with_roots(_FLOW, given, options, words, None, folder).ensure_success()
+        return report
 
 
 @_PREPARE.documents
@@ -196,10 +237,10 @@ def _given(network: NetworkLike | Rows, edges: Rows | None, radii: Column | None
     return network, edges, radii
 
 
-def _run_mesh(
+def _run_with_roots(
     verb: Verb, network: NetworkLike, options: Mapping[str, object], words: list[str], progress: ProgressLike, folder: str
 ) -> Done:
-    """Runs the verb ``mesh`` with roots as the program calls them."""
+    """Runs a verb with roots as the program calls them."""
     network = _with_labels(network)
     options = dict(options)
     roots: Any = options.get("roots")
@@ -208,6 +249,19 @@ def _run_mesh(
             raise TypeError(f"roots={roots!r}: give a sequence of nodes")
         options["roots"] = [str(network.node(root) if isinstance(network, Network) else root) for root in roots]
     return verb.run([write_network(folder, network), *words], options, progress, folder=folder)
+
+
+def _columns(path: str) -> dict[str, Any]:
+    """The columns of a table: numbers where all values are, else texts. Empty values are NaN."""
+    with open(path, newline="", encoding="utf-8") as file:
+        names, *rows = csv.reader(file)
+    found: dict[str, Any] = {}
+    for name, column in zip(names, zip(*rows) if rows else [()] * len(names)):
+        try:
+            found[name] = np.array([float(value) if value else np.nan for value in column])
+        except ValueError:
+            found[name] = np.array(column)
+    return found
 
 
 def _to_network(verb: Verb, network: NetworkLike, options: Mapping[str, object], progress: ProgressLike) -> Network:

@@ -27,6 +27,7 @@ FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [
     (anastomesh.mesh, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
     (anastomesh.estimate, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
     (anastomesh.mesh_shard, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
+    (anastomesh.flow, "flow", options.NetworkFlowOptions, set()),
     (anastomesh.surface, "surface", options.SurfaceOptions, set()),
     (anastomesh.prepare, "prepare", options.PrepareOptions, set()),
     (anastomesh.refine, "refine", options.RefineOptions, set()),

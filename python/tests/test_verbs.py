@@ -207,3 +207,16 @@ def test_results_are_short_to_print(fork: nx.Graph) -> None:
 def test_version() -> None:
     said = subprocess.run([anastomesh.binary(), "--version"], capture_output=True, text=True, check=True).stdout
     assert said.split() == ["anastomesh", anastomesh.__version__]
+
+
+def test_flow(fork: nx.Graph, tmp_path: Path) -> None:
+    found = anastomesh.flow(fork, inflow=2.0, viscosity=1.0, output=tmp_path / "model.json")
+    assert (found["vessels"], found["inlets"], found["outlets"], found["inflow"]) == (3, 1, 2, 2.0)
+    table = found["table"]
+    assert len(table["flow"]) == 3 and table["flow"].max() == pytest.approx(2.0)
+    assert table["pressure_start"].max() == pytest.approx(found["largest_pressure"])
+    assert anastomesh.info(tmp_path / "model.json")["nodes"] == 4
+    branches = anastomesh.flow(fork, vessels="branches", stiffness=1e5, output=tmp_path / "model.in")
+    assert len(branches["table"]["flow"]) == 3 and (tmp_path / "model.in").read_text().count("SEGMENT seg") == 3
+    with pytest.raises(anastomesh.InputError, match="unrecognised result extension"):
+        anastomesh.flow(fork, result=tmp_path / "model.json")

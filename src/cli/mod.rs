@@ -26,6 +26,7 @@ mod log;
 mod man;
 mod mesh;
 mod network;
+mod network_flow;
 mod numbers;
 mod page;
 mod picture;
@@ -93,6 +94,8 @@ enum Verb {
     Generate(generate::Args),
     /// Mesh a surface, a facet complex or points with tetrahedra
     Tetrahedralize(tetrahedralize::Args),
+    /// Solve for the one-dimensional flow through a network; write models for 0D and 1D solvers, or results along vessels
+    Flow(Box<network_flow::Args>),
     /// Convert a volume mesh, a surface or a network to another format, or a mesh to its boundary
     Convert(convert::Args),
     /// Draw a mesh, a surface or a network as a PNG image
@@ -145,6 +148,7 @@ pub fn main() -> ExitCode {
         Verb::Dual(args) => dual::run(args),
         Verb::Generate(args) => generate::run(args),
         Verb::Tetrahedralize(args) => tetrahedralize::run(args),
+        Verb::Flow(args) => network_flow::run(args),
         Verb::Convert(args) => convert::run(args),
         Verb::Render(args) => render::run(args),
         Verb::View(args) => view::run(args),

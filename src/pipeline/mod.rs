@@ -40,6 +40,8 @@ pub use error::RunError;
 pub use estimate::{Estimate, TooLarge};
 pub use flow_error::FlowError;
 pub use flow_plan::{FlowPlan, Inflow};
+#[cfg(feature = "cli")]
+pub(crate) use flow_plan::{FlowSolution, InletSite};
 pub use forecast::Forecast;
 pub use inlets::{Inlet, InletReason, Inlets, NoTerminal};
 pub use once::replay;

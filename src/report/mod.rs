@@ -3,6 +3,7 @@
 pub mod advice;
 pub mod caps;
 pub mod fidelity;
+pub mod flow;
 pub mod info;
 pub mod inlets;
 pub mod page;

@@ -17,6 +17,7 @@
 //! | [`surface`] | triangle surfaces, and boundaries of meshes |
 //! | [`volume`] | tetrahedral meshes with labelled boundaries, and cases for solvers |
 //! | [`flow`] | flow rates and outlet models of solver cases |
+//! | [`results`] | results of flow solvers |
 //! | [`npy`] | arrays of `NumPy`, which all three families have |
 //! | [`faults`] | faults that formats share |
 //!
@@ -41,6 +42,7 @@ pub mod flow;
 pub mod network;
 pub mod npy;
 mod patches;
+pub mod results;
 mod scalar;
 pub mod surface;
 #[doc(hidden)]

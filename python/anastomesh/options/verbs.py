@@ -6,6 +6,7 @@ from .filling import ComplexOptions, FillingOptions
 from .flow import FlowOptions
 from .growth import GrowthOptions
 from .layers import LayerOptions
+from .models import ModelOptions
 from .picture import FaultOptions, PictureOptions
 from .preparation import PreparationOptions
 from .reading import ReadingOptions
@@ -31,6 +32,20 @@ class MeshOptions(
     total=False,
 ):
     """Keyword arguments of ``mesh``, ``estimate`` and ``mesh_shard``."""
+
+
+class NetworkFlowOptions(
+    ReadingOptions,
+    ModelOptions,
+    RootOptions,
+    FlowOptions,
+    PreparationOptions,
+    RefinementOptions,
+    ThreadOptions,
+    ConfigOptions,
+    total=False,
+):
+    """Keyword arguments of ``flow``."""
 
 
 class SurfaceOptions(

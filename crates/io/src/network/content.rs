@@ -206,6 +206,10 @@ pub enum NetworkArray {
     NodeInts(&'static str, Vec<u32>),
     /// Vectors, one per node.
     NodeVectors(&'static str, Vec<[f64; 3]>),
+    /// Numbers, one per node.
+    NodeFloats(&'static str, Vec<f64>),
+    /// Numbers, one per edge.
+    EdgeFloats(&'static str, Vec<f64>),
 }
 
 /// Additional arrays of a refined network: `OriginalNode`, the input node of each node, and `Displacement`, its

@@ -8,6 +8,7 @@ use super::json::JsonError;
 use super::npy::NpyNetworkError;
 use super::pajek::PajekError;
 use super::radii::RadiusFault;
+use super::reduced::ReducedFault;
 use super::sv1d::Sv1dError;
 use super::swc::SwcError;
 use super::tetgen::EdgeFileError;
@@ -50,6 +51,20 @@ pub enum NetworkFileError {
     NotWritten {
         /// Path of the file.
         path: PathBuf,
+    },
+    /// The format has no reduced-order models.
+    #[error("{}: models are written as .json (svZeroDSolver) or .in (svOneDSolver); name a file with one of these extensions", path.display())]
+    NotAModel {
+        /// Path of the file.
+        path: PathBuf,
+    },
+    /// The solver does not take the model.
+    #[error("{}: {fault}", path.display())]
+    Model {
+        /// Path of the file.
+        path: PathBuf,
+        /// Reason.
+        fault: ReducedFault,
     },
     /// SWC files can contain trees only.
     #[error("{}: several vessels lead to node {}, but .swc can only contain trees; name a .vtp file", path.display(), node.0)]

@@ -16,8 +16,10 @@ mod pajek;
 mod polylines;
 mod radii;
 mod read;
+mod reduced;
 mod scale;
 mod sv1d;
+mod svzerod;
 mod swc;
 #[cfg(test)]
 mod tests;
@@ -42,6 +44,7 @@ pub mod faults {
     pub use super::pajek::PajekError;
     pub use super::radii::{NodeArrayFault, RadiusFault};
     pub use super::sv1d::Sv1dError;
+    pub use super::svzerod::SvZeroDError;
     pub use super::swc::SwcError;
     pub use super::tetgen::EdgeFileError;
     pub use super::vmv::VmvError;
@@ -51,5 +54,6 @@ pub mod faults {
 
 pub use format::NetworkFormat;
 pub use read::{read_network, read_network_arrays, read_network_from};
+pub use reduced::{ModelEnd, ReducedFault, ReducedModel, ReducedVessel, Stiffness};
 pub use write::{ensure_network_writable, ensure_tree_writable};
-pub use write::{write_network, write_tree};
+pub use write::{ensure_reduced_writable, write_network, write_reduced, write_tree};

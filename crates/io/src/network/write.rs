@@ -3,7 +3,8 @@
 use super::content::NetworkArray;
 use super::error::NetworkFileError;
 use super::format::NetworkFormat;
-use super::{npy, swc, vtp};
+use super::reduced::{ReducedFault, ReducedModel};
+use super::{npy, sv1d, svzerod, swc, vtp};
 use crate::file::{AtomicFile, write_whole};
 use anastomesh_skeleton::Skeleton;
 use std::io::{self, Write};
@@ -57,6 +58,54 @@ pub fn write_tree(path: &Path, tree: &Skeleton, arrays: &[NetworkArray]) -> Resu
     let not_a_tree = |node| NetworkFileError::NotATree { path: path.to_path_buf(), node };
     let parents = swc::parents(tree).map_err(not_a_tree)?;
     write(path, |file| swc::write(file, tree, &parents))
+}
+
+/// Writes a zero-dimensional model for `svZeroDSolver` (`.json`) or a one-dimensional one for `svOneDSolver` (`.in`),
+/// atomically. Both are read as networks.
+///
+/// ```
+/// use anastomesh_io::network::{ModelEnd, ReducedModel, ReducedVessel, Stiffness, read_network, write_reduced};
+/// use anastomesh_io::{NetworkOptions, flow::OutletModel};
+/// use anastomesh_mesh::Point3;
+///
+/// let vessel = ReducedVessel { path: vec![0, 1], radii: vec![1.0; 2], length: 9.0, resistance: 2.0, ..ReducedVessel::default() };
+/// let ends = [(0, ModelEnd::Inlet { rate: 3.0, waveform: None }), (1, ModelEnd::Outlet(OutletModel::default()))];
+/// let model = ReducedModel::new(1060.0, 3.5e-3, Stiffness::default())
+///     .nodes(vec![(Point3::origin(), 1.0), (Point3::new(0.0, 0.0, 9.0), 1.0)])
+///     .vessels(vec![vessel])
+///     .ends(ends.into());
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("tube.json");
+/// write_reduced(&path, &model)?;
+/// assert_eq!(read_network(&path, &NetworkOptions::default())?.skeleton.edges[0].radii, [1.0; 2]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The extension is not supported, the solver does not take the model, or the file cannot be written.
+pub fn write_reduced(path: &Path, model: &ReducedModel) -> Result<(), NetworkFileError> {
+    let one_dimensional = is_one_dimensional(path)?;
+    let fault = if one_dimensional { sv1d::check(model) } else { svzerod::check(model) };
+    fault.map_err(|fault: ReducedFault| NetworkFileError::Model { path: path.to_path_buf(), fault })?;
+    write(path, |file| if one_dimensional { sv1d::write(file, model) } else { svzerod::write(file, model) })
+}
+
+/// Checks in advance that a reduced-order model can be written to a path.
+///
+/// # Errors
+/// The extension is neither `.json` nor `.in`, or the parent folder does not exist.
+pub fn ensure_reduced_writable(path: &Path) -> Result<(), NetworkFileError> {
+    is_one_dimensional(path)?;
+    ensure_folder(path)
+}
+
+/// True for the format of `svOneDSolver`, false for that of `svZeroDSolver`.
+fn is_one_dimensional(path: &Path) -> Result<bool, NetworkFileError> {
+    match NetworkFormat::of(path) {
+        Ok(NetworkFormat::Json) => Ok(false),
+        Ok(NetworkFormat::Sv1d) => Ok(true),
+        _ => Err(NetworkFileError::NotAModel { path: path.to_path_buf() }),
+    }
 }
 
 /// Checks in advance that a network can be written to a path.

@@ -81,6 +81,20 @@ pub fn solve_with_resistances(
     Ok(NetworkFlow { pressure, of_terminal })
 }
 
+/// Resistance of an edge, a straight cone, to Poiseuille flow: pressure per flow rate.
+///
+/// ```
+/// use anastomesh_network::flow::resistance;
+/// use anastomesh_skeleton::{EdgeId, fixtures::network};
+///
+/// let tube = network(&[[0.0; 3], [0.0, 0.0, 3.0]], 1.0, &[(0, 1)]);
+/// assert!((resistance(&tube, EdgeId(0), 2.0) * std::f64::consts::PI / 48.0 - 1.0).abs() < 1e-15);
+/// ```
+#[must_use]
+pub fn resistance(skeleton: &Skeleton, edge: EdgeId, viscosity: f64) -> f64 {
+    1.0 / conductance(skeleton, edge, viscosity)
+}
+
 /// Conductance of a straight cone: 3 π a³ b³ / (8 μ L (a² + ab + b²)).
 fn conductance(skeleton: &Skeleton, edge: EdgeId, viscosity: f64) -> f64 {
     let [a, b] = skeleton.edge(edge).radii;

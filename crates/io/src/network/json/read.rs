@@ -3,6 +3,7 @@
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphFault, GraphPlace};
+use crate::network::svzerod::{self, SvZeroDError};
 use serde_json::{Map, Value as Json};
 
 /// Errors of a JSON network.
@@ -29,11 +30,17 @@ pub enum JsonError {
     /// The graph is not a valid network.
     #[error(transparent)]
     Graph(#[from] GraphFault),
+    /// The zero-dimensional model is not a valid network.
+    #[error(transparent)]
+    Model(#[from] SvZeroDError),
 }
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, JsonError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let whole: Json = serde_json::from_slice(bytes)?;
+    if svzerod::is_model(&whole) {
+        return Ok(svzerod::read(whole, options)?);
+    }
     let list = |names: &[&str]| names.iter().find_map(|name| whole.get(name)).and_then(Json::as_array);
     let nodes = list(&["nodes"]).ok_or(JsonError::NoList { list: "nodes" })?;
     // NetworkX called edges links before version 3.4.

@@ -38,6 +38,9 @@ pub(in crate::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[Netw
                 file(name).map_or(Ok(()), |f| put(&folder, f, values.as_chunks::<1>().0))
             }
             NetworkArray::NodeVectors(name, values) => file(name).map_or(Ok(()), |f| put(&folder, f, values)),
+            NetworkArray::NodeFloats(name, values) | NetworkArray::EdgeFloats(name, values) => {
+                file(name).map_or(Ok(()), |f| put(&folder, f, values.as_chunks::<1>().0))
+            }
         }?;
     }
     folder.commit()

@@ -33,11 +33,18 @@ pub(in crate::network) fn bytes_of(skeleton: &Skeleton, arrays: &[NetworkArray])
                 data_array(&mut text, "UInt32", name, 1, &bytes)?;
             }
             NetworkArray::NodeVectors(name, values) => floats(&mut text, name, 3, values.iter().flatten().copied())?,
+            NetworkArray::NodeFloats(name, values) => floats(&mut text, name, 1, values.iter().copied())?,
+            NetworkArray::EdgeFloats(..) => {}
         }
     }
     text.push_str("</PointData>\n<CellData>\n");
     floats(&mut text, "EdgeRadius", 1, edges.iter().map(Edge::mean_radius))?;
     floats(&mut text, END_RADII, 2, edges.iter().flat_map(|e| e.radii))?;
+    for array in arrays {
+        if let NetworkArray::EdgeFloats(name, values) = array {
+            floats(&mut text, name, 1, values.iter().copied())?;
+        }
+    }
     text.push_str("</CellData>\n<Points>\n");
     floats(&mut text, "Points", 3, nodes.iter().flat_map(|n| <[f64; 3]>::from(n.position)))?;
     text.push_str("</Points>\n<Lines>\n");
