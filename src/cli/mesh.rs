@@ -186,7 +186,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Fine);
     }
     // From here on finished blocks are stored.
-    stop.keep();
+    stop.explain(args.stopped_text());
     if let Some(dir) = &args.work.dir {
         work::note(dir, &bars);
     }
@@ -194,7 +194,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         (Some(work), Some(shard)) => args.run_shard(&work, shard, prepared, &bars),
         _ if prepared.plan.smooths_joints() => {
             let plan = prepared.plan.clone();
-            let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan))?;
+            let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan, &bars))?;
             args.finish(made, &plan, &bars)
         }
         (work, _) => args.run_in_store(work, prepared, &bars),
@@ -258,12 +258,13 @@ impl Args {
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
         let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
-        let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan))?;
+        let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
         self.finish(made, &plan, bars)
     }
 
     /// Writes the mesh and the reports.
     fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+        bars.keep();
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
         let options = WriteOptions::default()
@@ -310,8 +311,9 @@ impl Args {
     }
 
     /// Failure of a run, after its reports.
-    fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
+    fn explain(&self, error: MeshingError, plan: &MeshPlan, bars: &Bars) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        bars.keep();
         let paged = self.write_page(plan, &networks, &report, None);
         if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
             return failure;
@@ -330,7 +332,11 @@ impl Args {
 
     /// Failure of a stopped run, with the command that continues it.
     fn stopped(&self) -> Failure {
-        Failure::stopped(match &self.work.dir {
+        Failure::stopped(self.stopped_text())
+    }
+
+    fn stopped_text(&self) -> String {
+        match &self.work.dir {
             Some(dir) => {
                 let (dir, command) = (dir.display(), stop::command_line());
                 format!("stopped; finished blocks are kept in {dir}. Continue with\n  {command}")
@@ -339,7 +345,7 @@ impl Args {
                 "stopped; nothing is kept. With --work-dir DIR, finished blocks are kept and the same command continues"
                     .into()
             }
-        })
+        }
     }
 
     /// Writes the HTML report.
