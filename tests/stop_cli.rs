@@ -198,3 +198,77 @@ fn other_verbs_end_as_any_program_does() {
     assert_eq!(output.status.signal(), Some(2));
     assert!(!out.exists());
 }
+
+/// Writes a lattice of vessels that overlap, whose only block fails in every attempt.
+fn overlapping_lattice(path: &Path) {
+    const SIDE: usize = 6;
+    let places: Vec<[usize; 3]> = (0..SIDE.pow(3)).map(|i| [i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)]).collect();
+    let lines: Vec<[usize; 2]> = (0..places.len())
+        .flat_map(|i| [1, SIDE, SIDE * SIDE].into_iter().zip(places[i]).map(move |(step, x)| (i, step, x)))
+        .filter(|&(_, _, x)| x + 1 < SIDE)
+        .map(|(i, step, _)| [i, i + step])
+        .collect();
+    let points = places.iter().map(|[x, y, z]| format!("{} {} {}", 25 * x, 25 * y, 25 * z));
+    let text = [
+        vec!["# vtk DataFile Version 3.0".into(), "lattice".into(), "ASCII".into(), "DATASET POLYDATA".into()],
+        vec![format!("POINTS {} double", places.len())],
+        points.collect(),
+        vec![format!("LINES {} {}", lines.len(), 3 * lines.len())],
+        lines.iter().map(|[a, b]| format!("2 {a} {b}")).collect(),
+        vec![format!("POINT_DATA {}", places.len()), "SCALARS Radius double 1".into(), "LOOKUP_TABLE default".into()],
+        vec!["10".into(); places.len()],
+    ];
+    fs::write(path, text.concat().join("\n") + "\n").expect("written");
+}
+
+/// Stop requests at several moments of a run, in the order of a low-discrepancy sequence.
+#[test]
+fn a_stop_request_is_honoured_at_any_moment() {
+    let folder = folder();
+    let lattice = folder.path().join("lattice.vtk");
+    overlapping_lattice(&lattice);
+    let out = folder.path().join("a.vtu");
+    let tree = fixture("tree_30.vtp");
+    let cases: [(&Path, &[&str]); 3] =
+        [(&lattice, &[]), (&lattice, &["--refine"]), (&tree, &["--rho", "9", "--memory", "20GiB"])];
+    let mut stopped = 0;
+    for (i, (network, options)) in cases.into_iter().cycle().take(12).enumerate() {
+        let mut child = start("mesh", &[network, Path::new("-o"), &out], options);
+        let id = child.id();
+        let begin = Instant::now();
+        let after = Duration::from_secs_f64(0.02 + 1.2 * (0.618 * (i + 1) as f64).fract());
+        while child.try_wait().expect("a child").is_none() && (begin.elapsed() < after || !listens(id)) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        if child.try_wait().expect("a child").is_some() {
+            let _ = fs::remove_file(&out);
+            continue;
+        }
+        signal(&child, "-TERM");
+        let (output, took) = ended(child);
+        // A second of patience, and another one for a busy machine.
+        assert!(took < Duration::from_secs(4), "case {i}: {took:?}");
+        if output.status.code() == Some(STOPPED) {
+            stopped += 1;
+            assert_eq!(entries(folder.path()), ["lattice.vtk"], "case {i}");
+        }
+        for left in entries(folder.path()).iter().filter(|name| *name != "lattice.vtk") {
+            let path = folder.path().join(left);
+            let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+        }
+    }
+    assert!(stopped >= 6, "{stopped}");
+}
+
+/// A network whose only block fails in every attempt ends with a typed fault.
+#[test]
+fn blocks_that_cannot_be_meshed_end() {
+    let folder = folder();
+    let lattice = folder.path().join("lattice.vtk");
+    overlapping_lattice(&lattice);
+    let out = folder.path().join("a.vtu");
+    let start = Instant::now();
+    let output = mesh(&lattice, &out, &[]);
+    assert_ne!(output.status.code(), Some(FINE), "{}", stderr(&output));
+    assert!(start.elapsed() < Duration::from_secs(100), "{:?}", start.elapsed());
+}

@@ -7,22 +7,25 @@ use anastomesh_skeleton::NodeId;
 /// Terminals whose whole disc lies within the tube of another vessel, with their indices in `Cluster::ends`. The wall
 /// encloses that vessel, and none exists at the tip.
 pub(crate) fn buried(cluster: &Cluster) -> impl Iterator<Item = (u32, NodeId, &ClusterEnd)> {
-    let beyond: Vec<usize> = cluster.ends.iter().map(|end| end.overrun as usize).collect();
+    let mut beyond = vec![false; cluster.tubes.len()];
+    for end in &cluster.ends {
+        beyond[end.overrun as usize] = true;
+    }
     (0..).zip(&cluster.ends).filter_map(move |(i, end)| match end.kind {
         EndKind::Terminal(node) => is_buried(&cluster.tubes, &beyond, end).then_some((i, node, end)),
         EndKind::Cut { .. } => None,
     })
 }
 
-/// `beyond` are the tubes beyond the ends.
-fn is_buried(tubes: &[Tube], beyond: &[usize], end: &ClusterEnd) -> bool {
+/// `beyond` flags the tubes beyond the ends.
+fn is_buried(tubes: &[Tube], beyond: &[bool], end: &ClusterEnd) -> bool {
     let (tip, radius) = (end.section.origin, end.section.radius);
     let covers = |i: &usize| {
         let (t, distance) = point_segment(&tip, &tubes[*i].a, &tubes[*i].b);
         distance + radius <= tubes[*i].radius(t)
     };
     let ends_here = |i: &usize| [tubes[*i].a, tubes[*i].b].contains(&tip);
-    let other = |i: &usize| !beyond.contains(i) && !ends_here(i);
+    let other = |i: &usize| !beyond[*i] && !ends_here(i);
     let mut covering = (0..tubes.len()).filter(other).filter(covers).peekable();
     if covering.peek().is_none() {
         return false;
@@ -32,11 +35,11 @@ fn is_buried(tubes: &[Tube], beyond: &[usize], end: &ClusterEnd) -> bool {
 }
 
 /// Tubes from a tip to the next branch point.
-fn own_vessel(tubes: &[Tube], beyond: &[usize], tip: Point3) -> Vec<usize> {
+fn own_vessel(tubes: &[Tube], beyond: &[bool], tip: Point3) -> Vec<usize> {
     let mut own: Vec<usize> = Vec::new();
     let mut place = tip;
     loop {
-        let touches = |i: &usize| [tubes[*i].a, tubes[*i].b].contains(&place) && !beyond.contains(i);
+        let touches = |i: &usize| [tubes[*i].a, tubes[*i].b].contains(&place) && !beyond[*i];
         let mut onward = (0..tubes.len()).filter(touches).filter(|i| !own.contains(i));
         let (Some(next), None) = (onward.next(), onward.next()) else { return own };
         own.push(next);

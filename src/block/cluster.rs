@@ -14,6 +14,7 @@ use crate::surface::{
     CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
     euler_characteristic, vessel_wall,
 };
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::NodeId;
@@ -74,7 +75,7 @@ pub fn mesh_cluster(id: ClusterId, cluster: &Cluster, params: &BlockParams) -> R
     mesh_cluster_watched(id, cluster, params, &Watch::NOBODY)
 }
 
-/// Meshes one cluster like [`mesh_cluster`], with cancellation of the tetrahedralization, which takes most of the time.
+/// Meshes one cluster like [`mesh_cluster`], with cancellation and a budget.
 ///
 /// # Errors
 /// See [`mesh_cluster`].
@@ -88,15 +89,14 @@ pub(crate) fn mesh_cluster_watched(
     if let Some(tube) = lone_tube(cluster, params) {
         return of_tube(id, cluster, tube, params);
     }
-    let (surface, voxel, astray) = cluster_surface(id, cluster, params)?;
+    let (surface, voxel, astray) = cluster_surface(id, cluster, params, watch)?;
     let edge = surface.mesh.mean_edge();
-    let failed = |source| BlockError::Tetrahedra { cluster: id, source };
+    let failed = |source| BlockError::of_filling(id, source);
     let FilledSurface { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
     let caps = caps(cluster, &discs);
     let surface_triangles = surface.mesh.triangles.len();
     let handles = 1 - euler_characteristic(&surface.mesh) / 2;
-    let all = Loops::of(cluster);
-    let loops = all.expected(handles);
+    let Loops { all, expected: loops } = Loops::of(cluster, handles, watch).map_err(|stop| stopped(id, stop))?;
     let uncapped = uncapped(cluster, &caps);
     let mut out = ClusterMesh {
         mesh,
@@ -109,7 +109,7 @@ pub(crate) fn mesh_cluster_watched(
         surface_triangles,
         handles,
         loops,
-        filled: all.all - loops,
+        filled: all - loops,
         thin,
         ends: Vec::new(),
     };
@@ -181,11 +181,13 @@ fn of_tube(
 /// Creates the closed wall of a cluster with its caps, for [`mesh_cluster`]. Also returns cell size and deviations.
 ///
 /// # Errors
-/// The wall cannot be created, has a different topology than the skeleton, or cannot be capped.
+/// The wall cannot be created, has a different topology than the skeleton, or cannot be capped; `Stopped` if the watch
+/// says so.
 pub fn cluster_surface(
     id: ClusterId,
     cluster: &Cluster,
     params: &BlockParams,
+    watch: &Watch,
 ) -> Result<(CappedSurface, f64, Astray), BlockError> {
     params.check()?;
     if !params.allow_fused
@@ -203,42 +205,45 @@ pub fn cluster_surface(
         follow: params.follow,
         ..SurfaceParams::with_voxel(voxel)
     };
-    let failed = |source| BlockError::Surface { cluster: id, source };
+    let failed = |source| BlockError::of_wall(id, source);
+    let stopped = |stop| stopped(id, stop);
     let finer = Finer { forks: cluster.fine.clone(), ends: cluster.ends.iter().map(|end| end.section).collect() };
-    let wall = vessel_wall(&cluster.tubes, &surface_params, &finer).map_err(failed)?;
+    let wall = vessel_wall(&cluster.tubes, &surface_params, &finer, watch).map_err(failed)?;
     let handles = 1 - euler_characteristic(&wall.mesh) / 2;
-    let loops = Loops::of(cluster).expected(handles);
+    let loops = Loops::of(cluster, handles, watch).map_err(stopped)?.expected;
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
-    let astray = Astray::of(&wall.mesh, cluster);
+    let astray = Astray::of(&wall.mesh, cluster, watch).map_err(stopped)?;
     if !params.allow_fused {
         stays(id, astray)?;
     }
     let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
-    let mut closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
-    let mut capped = loop {
-        let given =
-            |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
-        let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
-        let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
-            section: end.section,
-            node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
-            disc,
-        };
-        let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
-        match cap_terminals(&wall, &mut field, &ends, &surface_params) {
-            Ok(capped) => break capped,
-            // Terminates, as each iteration removes one end.
-            Err(CapError::End { end, node: Some(_), .. }) if params.allow_fused => drop(closed.remove(end as usize)),
-            Err(source) => return Err(BlockError::Cap { cluster: id, source: name_end(source, &closed) }),
-        }
+    let closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
+    let given =
+        |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
+    let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
+    let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
+        section: end.section,
+        node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
+        disc,
     };
+    let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
+    let capped = cap_terminals(&wall, &mut field, &ends, &surface_params, params.allow_fused, watch);
+    let mut capped = capped.map_err(|source| match source {
+        CapError::Stopped(stop) => stopped(stop),
+        source => BlockError::Cap { cluster: id, source: name_end(source, &closed) },
+    })?;
     // Converts cap indices from closed ends to all ends.
     for cap in capped.cap.iter_mut().flatten() {
         *cap = closed[*cap as usize].0;
     }
     Ok((capped, voxel, astray))
+}
+
+/// Failure of a cluster that was stopped.
+fn stopped(cluster: ClusterId, source: Stop) -> BlockError {
+    BlockError::Stopped { cluster, source }
 }
 
 /// Checks that a wall matches its vessels.

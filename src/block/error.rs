@@ -4,6 +4,7 @@ use super::connector_surface::{ConnectorFault, Division};
 use super::end_surface::CutEnd;
 use crate::partition::{ClusterId, CutId};
 use crate::surface::{CapError, SurfaceError};
+use anastomesh_mesh::budget::{OverBudget, Stop};
 use anastomesh_mesh::check::Line;
 use anastomesh_mesh::units::{counted, number};
 use anastomesh_tet::TetError;
@@ -81,6 +82,27 @@ pub enum BlockError {
         /// Point on the axis of one of them.
         at: [f64; 3],
     },
+    /// The caller asked for a stop, or the cluster exceeds its budget.
+    #[error("cluster {}: {source}", cluster.0)]
+    Stopped {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Reason of the stop.
+        source: Stop,
+    },
+    /// The cluster is expected to take more memory than is allowed.
+    #[error(
+        "cluster {}: it needs {:.1} GiB of memory, more than the limit of {:.1} GiB",
+        cluster.0, gibibytes(*bytes), gibibytes(*limit)
+    )]
+    Memory {
+        /// The cluster.
+        cluster: ClusterId,
+        /// Expected bytes.
+        bytes: u64,
+        /// Bytes that are allowed.
+        limit: u64,
+    },
     /// A terminal could not be capped.
     #[error("cluster {}: {source}", cluster.0)]
     Cap {
@@ -151,6 +173,10 @@ pub enum BlockError {
     },
 }
 
+fn gibibytes(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 30)
+}
+
 /// Text on the quantity of a block that is below its limit.
 fn too_flat(ratio: f64, dihedral: f64, [least_ratio, least_dihedral]: [f64; 2]) -> String {
     if ratio < least_ratio {
@@ -197,11 +223,39 @@ impl BlockError {
         matches!(self, Self::Surface { source: SurfaceError::TooLarge { .. }, .. })
     }
 
+    /// True if the caller asked for a stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Stopped { source: Stop::Cancelled, .. })
+    }
+
+    /// True if the block exceeds its budget.
+    pub fn is_over_budget(&self) -> bool {
+        matches!(self, Self::Stopped { source: Stop::OverBudget(_), .. })
+    }
+
+    /// Failure of a cluster's wall.
+    pub(super) fn of_wall(cluster: ClusterId, source: SurfaceError) -> Self {
+        match source {
+            SurfaceError::Stopped(source) => Self::Stopped { cluster, source },
+            source => Self::Surface { cluster, source },
+        }
+    }
+
+    /// Failure of a cluster's tetrahedra.
+    pub(super) fn of_filling(cluster: ClusterId, source: TetError) -> Self {
+        match source {
+            TetError::Cancelled => Self::Stopped { cluster, source: Stop::Cancelled },
+            TetError::OverBudget { limit } => Self::Stopped { cluster, source: OverBudget { limit }.into() },
+            source => Self::Tetrahedra { cluster, source },
+        }
+    }
+
     /// Readable name of the failed stage.
     pub fn stage(&self) -> &'static str {
         match self {
             Self::Parameter { .. } | Self::NoWovenJoints => "parameters",
             Self::Surface { .. } | Self::Genus { .. } | Self::Outside { .. } | Self::Fused { .. } => "wall",
+            Self::Stopped { .. } | Self::Memory { .. } => "budget",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",
             Self::End { .. } => "ends",

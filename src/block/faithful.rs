@@ -5,9 +5,11 @@
 
 use crate::partition::Cluster;
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::predicates::orient3d;
-use anastomesh_mesh::geometry::{Point3, Tube, crossing, place_key};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, crossing, place_key};
 use anastomesh_skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
+use anastomesh_tet::parts::{Counter, Watch};
 use rustc_hash::FxHashMap;
 
 /// Sampling step along an axis, in radii.
@@ -18,6 +20,10 @@ const MOST: f64 = 8.0;
 const NEAR: f64 = 1.3;
 /// Minimum distance along the vessels for fusion, in sums of radii widened by `NEAR`: about 12 radii.
 const FAR: f64 = 4.5;
+/// Maximum number of pairs of vessels for which the wall is searched without a tree.
+const FEW: usize = 8;
+/// Operations per pair of close vessels, as counted by budgets.
+const PER_PAIR: usize = 20;
 
 /// Deviations of a wall from its vessels; empty unless they are allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -29,22 +35,28 @@ pub struct Astray {
 }
 
 impl Astray {
-    pub(super) fn of(wall: &TriMesh, cluster: &Cluster) -> Self {
-        Self { outside: outside(wall, cluster), fused: fused(wall, cluster) }
+    /// Compares a wall with the vessels of its cluster.
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch says so.
+    pub(super) fn of(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Self, Stop> {
+        Ok(Self { outside: outside(wall, cluster, watch)?, fused: fused(wall, cluster, watch)? })
     }
 }
 
 /// First sample on a cluster's axes that lies outside its wall.
-fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
+fn outside(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<Point3>, Stop> {
     let mut places = places(cluster);
     places.sort_by(|p, q| p.y.total_cmp(&q.y));
     let mut winding = vec![0_i32; places.len()];
     let mut on_wall = vec![false; places.len()];
+    let mut counter = Counter::new(watch);
     for triangle in &wall.triangles {
         let [a, b, c] = triangle.map(|v| &wall.points[v as usize]);
         let [low, high] = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
         let first = places.partition_point(|p| p.y < low);
         for (i, p) in places.iter().enumerate().skip(first).take_while(|(_, p)| p.y <= high) {
+            counter.add(1)?;
             // Rays run along x.
             if p.x > a.x.max(b.x).max(c.x) || p.z < a.z.min(b.z).min(c.z) || p.z > a.z.max(b.z).max(c.z) {
                 continue;
@@ -55,7 +67,8 @@ fn outside(wall: &TriMesh, cluster: &Cluster) -> Option<Point3> {
             }
         }
     }
-    (0..places.len()).find(|&i| winding[i] != 1 || on_wall[i]).map(|i| places[i])
+    counter.end()?;
+    Ok((0..places.len()).find(|&i| winding[i] != 1 || on_wall[i]).map(|i| places[i]))
 }
 
 /// Sample points on the axes of a cluster, up to its ends.
@@ -70,13 +83,16 @@ fn places(cluster: &Cluster) -> Vec<Point3> {
 }
 
 fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
-    let beyond = |i: u32| cluster.ends.iter().any(|end| end.overrun == i);
-    (0..).zip(&cluster.tubes).filter(move |(i, _)| !beyond(*i)).map(|(_, tube)| tube)
+    let mut beyond = vec![false; cluster.tubes.len()];
+    for end in &cluster.ends {
+        beyond[end.overrun as usize] = true;
+    }
+    beyond.into_iter().zip(&cluster.tubes).filter(|(beyond, _)| !beyond).map(|(_, tube)| tube)
 }
 
 /// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them. The web in a
 /// narrow crotch does not count.
-fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
+fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Point3; 2]>, Stop> {
     let skeleton = widened(cluster);
     let adjacency = skeleton.adjacency();
     let overlaps = skeleton.overlaps(&adjacency);
@@ -87,8 +103,46 @@ fn fused(wall: &TriMesh, cluster: &Cluster) -> Option<[Point3; 2]> {
             o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
         })
     };
-    let mut pairs = overlaps.pairs.iter().filter(|o| is_far(o));
-    pairs.find(|o| !is_parted(wall, &o.points[0], &o.points[1])).map(|o| o.points)
+    let mut walls = WallSearch { wall, searched: 0, tree: None };
+    for o in &overlaps.pairs {
+        watch.spend(PER_PAIR)?;
+        if is_far(&o) {
+            watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
+            if !walls.is_parted(&o.points[0], &o.points[1]) {
+                return Ok(Some(o.points));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Search for triangles of a wall between two points.
+struct WallSearch<'a> {
+    wall: &'a TriMesh,
+    /// Number of searches.
+    searched: usize,
+    /// Search tree, built after some searches.
+    tree: Option<Bvh>,
+}
+
+impl WallSearch<'_> {
+    /// True if the wall crosses or touches the segment between two points.
+    fn is_parted(&mut self, p: &Point3, q: &Point3) -> bool {
+        self.searched += 1;
+        if self.searched <= FEW {
+            return is_parted(self.wall, p, q);
+        }
+        let wall = self.wall;
+        let corners = |t: &[u32; 3]| t.map(|v| &wall.points[v as usize]);
+        let tree = self.tree.get_or_insert_with(|| {
+            Bvh::new(&wall.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect::<Vec<Aabb>>())
+        });
+        let mut found = false;
+        tree.query(&Aabb::of_points([p, q]), |i| {
+            found = found || meets(corners(&wall.triangles[i as usize]), p, q);
+        });
+        found
+    }
 }
 
 /// Graph of the cluster's vessels, widened by the fusion distance.
@@ -146,9 +200,18 @@ mod tests {
     }
 
     fn wall(cluster: &Cluster) -> TriMesh {
-        vessel_wall(&cluster.tubes, &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) }, &Finer::default())
-            .expect("a wall")
-            .mesh
+        vessel_wall(
+            &cluster.tubes,
+            &SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.5) },
+            &Finer::default(),
+            &Watch::NOBODY,
+        )
+        .expect("a wall")
+        .mesh
+    }
+
+    fn of(cluster: &Cluster) -> Astray {
+        Astray::of(&wall(cluster), cluster, &Watch::NOBODY).unwrap()
     }
 
     /// Helix of radius 2 with this pitch, in radii of the vessel.
@@ -163,9 +226,9 @@ mod tests {
     #[test]
     fn turns_that_fuse_are_found() {
         let wide = helix(4.0);
-        assert_eq!(Astray::of(&wall(&wide), &wide), Astray::default());
+        assert_eq!(of(&wide), Astray::default());
         let tight = helix(1.7);
-        let found = Astray::of(&wall(&tight), &tight);
+        let found = of(&tight);
         assert!(found.fused.is_some() && found.outside.is_none(), "{found:?}");
     }
 
@@ -173,8 +236,23 @@ mod tests {
     fn an_axis_that_leaves_the_wall_is_found() {
         let straight = cluster(&[[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]);
         let bent = cluster(&[[0.0; 3], [10.0, 1.5, 0.0], [20.0, 0.0, 0.0]]);
-        assert_eq!(Astray::of(&wall(&straight), &straight), Astray::default());
-        let place = Astray::of(&wall(&straight), &bent).outside.expect("outside");
+        assert_eq!(of(&straight), Astray::default());
+        let place = Astray::of(&wall(&straight), &bent, &Watch::NOBODY).unwrap().outside.expect("outside");
         assert!(place.y > 0.9, "{place}");
+    }
+
+    #[test]
+    fn the_tree_and_the_list_of_triangles_agree() {
+        let cluster = helix(4.0);
+        let wall = wall(&cluster);
+        let mut search = WallSearch { wall: &wall, searched: FEW, tree: None };
+        let points: Vec<Point3> = cluster.tubes.iter().map(|tube| tube.a).collect();
+        let (mut parted, mut open) = (0, 0);
+        for (p, q) in points.iter().flat_map(|p| points.iter().map(move |q| (p, q))) {
+            let expected = is_parted(&wall, p, q);
+            assert_eq!(search.is_parted(p, q), expected, "{p} {q}");
+            *(if expected { &mut parted } else { &mut open }) += 1;
+        }
+        assert!(search.tree.is_some() && parted > 100 && open > 100, "{parted} {open}");
     }
 }

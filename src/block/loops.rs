@@ -1,7 +1,9 @@
 //! Loops of a cluster's vessels. A loop within its own lumen is filled and creates no handle.
 
 use crate::partition::Cluster;
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
+use anastomesh_tet::parts::Watch;
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -15,26 +17,39 @@ const STEP: f64 = 0.5;
 const MOST: f64 = 64.0;
 /// Maximum number of loops examined in one cluster.
 const MOST_LOOPS: usize = 64;
+/// Tubes tested in the time of an operation of the budget, as half of them are tested on average.
+const TUBES_PER_OPERATION: usize = 16;
 
 /// Independent loops in the graph of a cluster's tubes. Equal end points are one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Loops {
     /// Number of all loops.
     pub all: i64,
-    /// Number of loops that may be filled by their own lumen.
-    pub filled: i64,
+    /// Expected handles of the wall: as many as it has, if only loops are missing that their own lumen may fill.
+    pub expected: i64,
 }
 
 impl Loops {
-    pub fn of(cluster: &Cluster) -> Self {
+    /// Loops of a cluster whose wall has so many handles.
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch says so.
+    pub fn of(cluster: &Cluster, handles: i64, watch: &Watch) -> Result<Self, Stop> {
         let graph = Graph::of(&cluster.tubes);
-        let filled = graph.closing.iter().take(MOST_LOOPS).filter(|&&tube| graph.is_filled(tube)).count();
-        Self { all: graph.closing.len() as i64, filled: filled as i64 }
-    }
-
-    /// Expected handles of a wall: `handles` itself, if only fillable loops are missing.
-    pub fn expected(self, handles: i64) -> i64 {
-        if (self.all - self.filled..=self.all).contains(&handles) { handles } else { self.all }
+        let all = graph.closing.len() as i64;
+        let missing = all - handles;
+        // No other number of handles depends on what is filled.
+        if !(1..=MOST_LOOPS as i64).contains(&missing) {
+            return Ok(Self { all, expected: all });
+        }
+        let mut filled = 0;
+        for &tube in graph.closing.iter().take(MOST_LOOPS) {
+            filled += i64::from(graph.is_filled(tube, watch)?);
+            if filled == missing {
+                return Ok(Self { all, expected: handles });
+            }
+        }
+        Ok(Self { all, expected: all })
     }
 }
 
@@ -77,9 +92,10 @@ impl<'a> Graph<'a> {
     }
 
     /// True if the shortest loop through a tube spans only lumen.
-    fn is_filled(&self, tube: u32) -> bool {
+    fn is_filled(&self, tube: u32, watch: &Watch) -> Result<bool, Stop> {
         let [a, b] = self.ends[tube as usize];
-        let Some(mut around) = self.way(a, b, tube) else { return false };
+        watch.spend(self.places.len())?;
+        let Some(mut around) = self.way(a, b, tube) else { return Ok(false) };
         around.push(tube);
         let vessels: Vec<&Tube> = around.iter().map(|&t| &self.tubes[t as usize]).collect();
         let length: f64 = vessels.iter().map(|t| t.length()).sum();
@@ -88,7 +104,12 @@ impl<'a> Graph<'a> {
             center += (tube.a.coords + tube.b.coords) * (0.5 * tube.length() / length);
         }
         let step = STEP * vessels.iter().map(|t| t.min_radius()).fold(f64::INFINITY, f64::min);
-        vessels.iter().all(|tube| self.holds([&center.into(), &tube.a, &tube.b], step))
+        for tube in &vessels {
+            if !self.holds([&center.into(), &tube.a, &tube.b], step, watch)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Tubes of the shortest path between two nodes that avoids one tube (Dijkstra's algorithm).
@@ -123,25 +144,30 @@ impl<'a> Graph<'a> {
     }
 
     /// True if a triangle lies within the tubes, up to `WITHIN`.
-    fn holds(&self, [a, b, c]: [&Point3; 3], step: f64) -> bool {
+    fn holds(&self, [a, b, c]: [&Point3; 3], step: f64, watch: &Watch) -> Result<bool, Stop> {
         let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
         let count = (longest / step).ceil().clamp(1.0, MOST) as u32;
         let share = |k: u32| f64::from(k) / f64::from(count);
-        (0..=count).all(|i| {
-            (0..=count - i).all(|j| {
-                let point = a + (b - a) * share(i) + (c - a) * share(j);
-                self.tubes.iter().any(|tube| {
-                    let (t, distance) = point_segment(&point, &tube.a, &tube.b);
-                    distance <= WITHIN * tube.radius(t)
-                })
+        let is_within = |point: &Point3| {
+            self.tubes.iter().any(|tube| {
+                let (t, distance) = point_segment(point, &tube.a, &tube.b);
+                distance <= WITHIN * tube.radius(t)
             })
-        })
+        };
+        for i in 0..=count {
+            watch.spend((count - i + 1) as usize * self.tubes.len() / TUBES_PER_OPERATION)?;
+            if !(0..=count - i).all(|j| is_within(&(a + (b - a) * share(i) + (c - a) * share(j)))) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use anastomesh_mesh::budget::Budget;
     use std::f64::consts::TAU;
 
     /// A ring of this radius of vessels with radius 1, with a vessel that leaves it.
@@ -159,12 +185,16 @@ mod tests {
     #[test]
     fn a_loop_within_its_lumen_may_be_filled_and_no_other() {
         for (radius, filled) in [(0.9, 1), (1.2, 1), (1.6, 0), (5.0, 0)] {
-            let loops = Loops::of(&ring(radius));
-            assert_eq!(loops, Loops { all: 1, filled }, "radius {radius}");
-            assert_eq!([0, 1, 2].map(|handles| loops.expected(handles)), [1 - filled, 1, 1]);
+            let of = |handles| Loops::of(&ring(radius), handles, &Watch::NOBODY).unwrap();
+            assert!([0, 1, 2].into_iter().all(|handles| of(handles).all == 1));
+            assert_eq!([0, 1, 2].map(|handles| of(handles).expected), [1 - filled, 1, 1], "radius {radius}");
         }
         let mut two = ring(1.0);
         two.tubes.extend(ring(6.0).tubes);
-        assert_eq!(Loops::of(&two), Loops { all: 2, filled: 1 });
+        let of = |handles| Loops::of(&two, handles, &Watch::NOBODY).unwrap();
+        assert_eq!([0, 1, 2, 3].map(|handles| of(handles).expected), [2, 1, 2, 2]);
+        let budget = Budget::new(10);
+        let stopped = Loops::of(&two, 1, &Watch::NOBODY.within(&budget));
+        assert!(matches!(stopped, Err(Stop::OverBudget(_))));
     }
 }

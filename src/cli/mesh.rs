@@ -189,7 +189,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let refined = || prepared.refined(work.as_ref().map(|work| &work.store), &bars);
     let prepared = pool.install(refined).map_err(|e| args.explain_alone(e))?;
     // Shards do not write shared files.
-    if shard.is_none() && !args.dry_run && prepared.networks.refine.is_some() {
+    if shard.is_none() && !args.dry_run && args.refined.is_some() && prepared.networks.refine.is_some() {
         stop.keep();
         args.write_refined(&prepared.networks)?;
     }
@@ -199,7 +199,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Fine);
     }
     // From here on finished blocks are stored.
-    stop.keep();
+    stop.explain(args.stopped_text());
     if let Some(dir) = &args.work.dir {
         work::note(dir, &bars);
     }
@@ -207,7 +207,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         (Some(work), Some(shard)) => args.run_shard(&work, shard, prepared, &bars),
         _ if prepared.plan.smooths_joints() => {
             let plan = prepared.plan.clone();
-            let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan))?;
+            let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan, &bars))?;
             args.finish(made, &plan, &bars)
         }
         (work, _) => args.run_in_store(work, prepared, &bars),
@@ -268,12 +268,13 @@ impl Args {
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
         let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
-        let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan))?;
+        let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
         self.finish(made, &plan, bars)
     }
 
     /// Writes the mesh and the reports.
     fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+        bars.keep();
         self.tell_refined(&made.networks)?;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
@@ -330,8 +331,9 @@ impl Args {
     }
 
     /// Failure of a run, after its reports.
-    fn explain(&self, error: MeshingError, plan: &MeshPlan) -> Failure {
+    fn explain(&self, error: MeshingError, plan: &MeshPlan, bars: &Bars) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        bars.keep();
         if let Err(failure) = self.tell_refined(&networks) {
             return failure;
         }
@@ -353,7 +355,11 @@ impl Args {
 
     /// Failure of a stopped run, with the command that continues it.
     fn stopped(&self) -> Failure {
-        Failure::stopped(match &self.work.dir {
+        Failure::stopped(self.stopped_text())
+    }
+
+    fn stopped_text(&self) -> String {
+        match &self.work.dir {
             Some(dir) => {
                 let (dir, command) = (dir.display(), stop::command_line());
                 format!("stopped; finished blocks are kept in {dir}. Continue with\n  {command}")
@@ -362,7 +368,7 @@ impl Args {
                 "stopped; nothing is kept. With --work-dir DIR, finished blocks are kept and the same command continues"
                     .into()
             }
-        })
+        }
     }
 
     /// Writes the HTML report.

@@ -176,6 +176,11 @@ impl Bars {
         Self { shown: shows_bars(quiet, told), quiet, lines, current, times, stop }
     }
 
+    /// Marks that the run writes results from here on, and stops on its own.
+    pub fn keep(&self) {
+        self.stop.keep();
+    }
+
     /// Runs a stage without steps.
     pub fn during<T>(&self, stage: Stage, run: impl FnOnce() -> T) -> T {
         self.at(stage, 0, 0);

@@ -17,7 +17,7 @@ use crate::report::rows::row;
 use anastomesh_io::volume::{MeshNotes, ensure_writable, write_mesh};
 use anastomesh_mesh::quality::TetQuality;
 use anastomesh_mesh::units::{counted, tetrahedra};
-use anastomesh_tet::{TetError, parts::Watch};
+use anastomesh_tet::parts::Watch;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(true, args.common.progress, stop.clone());
     match pool.install(|| replay(&dump, &Watch::asking(&bars))) {
-        Err(BlockError::Tetrahedra { source: TetError::Cancelled, .. }) => Err(Failure::stopped(NOTHING_KEPT)),
+        Err(error) if error.is_cancelled() => Err(Failure::stopped(NOTHING_KEPT)),
         Err(error) => args.fails_again(&dump, &error),
         Ok(block) => {
             stop.keep();

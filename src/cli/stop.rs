@@ -1,8 +1,9 @@
 //! Signals: the first Ctrl-C stops the run at the next safe point, the second ends the program.
 
+use std::borrow::Cow;
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 #[cfg(unix)]
 use std::time::Duration;
 
@@ -15,7 +16,8 @@ use super::bar;
 use super::exit::{Exit, Failure};
 use super::log;
 
-/// Time until a run without stored results is ended after a signal. Some stages do not check for it.
+/// Time until a run that writes no results is ended after a signal. Some stages do not check for it. Finished blocks survive
+/// that: a work directory recovers from a kill at any time.
 #[cfg(unix)]
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -28,6 +30,8 @@ pub struct Stop {
     asked: Arc<AtomicBool>,
     /// True if only the run itself can stop safely, as it writes results.
     keeps: Arc<AtomicBool>,
+    /// Message if the run is ended.
+    last_words: Arc<Mutex<Cow<'static, str>>>,
 }
 
 impl Stop {
@@ -45,12 +49,18 @@ impl Stop {
 
     /// Request that is never set, for commands that the first Ctrl-C ends.
     pub fn deaf() -> Self {
-        Self { asked: Arc::default(), keeps: Arc::default() }
+        let last_words = Arc::new(Mutex::new(Cow::Borrowed(NOTHING_KEPT)));
+        Self { asked: Arc::default(), keeps: Arc::default(), last_words }
     }
 
     /// Marks that the run writes results, and must stop on its own.
     pub fn keep(&self) {
         self.keeps.store(true, Ordering::SeqCst);
+    }
+
+    /// Sets the message if the run is ended.
+    pub fn explain(&self, last_words: String) {
+        *self.last_words.lock().unwrap_or_else(PoisonError::into_inner) = last_words.into();
     }
 
     /// True if a stop was requested.
@@ -70,7 +80,7 @@ impl Stop {
         use std::io::Read;
         let (mut heard, told) = std::os::unix::net::UnixStream::pair()?;
         low_level::pipe::register(signal, told)?;
-        let Self { asked, keeps } = self.clone();
+        let Self { asked, keeps, last_words } = self.clone();
         let wait = move || {
             // The signal may arrive before the thread starts.
             if !asked.load(Ordering::SeqCst) && heard.read_exact(&mut [0]).is_err() {
@@ -83,7 +93,7 @@ impl Stop {
             std::thread::sleep(PATIENCE);
             if !keeps.load(Ordering::SeqCst) {
                 bar::clear();
-                log::error(NOTHING_KEPT);
+                log::error(&last_words.lock().unwrap_or_else(PoisonError::into_inner));
                 low_level::exit(Exit::Stopped.code().into());
             }
         };

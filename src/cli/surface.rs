@@ -79,7 +79,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(report) = prepared.networks.refine.as_ref().filter(|_| args.common.verbose && !args.common.json) {
         log::note(&report.text(&|node| prepared.networks.names.of(NodeId(node))));
     }
-    stop.keep();
     pool.install(|| args.make(prepared, &bars))
 }
 
@@ -100,6 +99,7 @@ impl Args {
         let (_, store) = BlockPlace::beside(&self.output, &run.rough_estimate(), plan.memory)?;
         let fits = |estimate: &Estimate| limits::block_fits(estimate, plan);
         let mut made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, plan))?;
+        bars.keep();
         let notes = MeshNotes {
             generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             options: format!("surface {}", self.blocks.typed(true)),

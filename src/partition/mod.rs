@@ -16,6 +16,7 @@ mod tests;
 
 use std::sync::Arc;
 
+use anastomesh_mesh::progress::Progress;
 use anastomesh_skeleton::course::Courses;
 use anastomesh_skeleton::cuttability::BranchEnd;
 use anastomesh_skeleton::{BranchId, Skeleton};
@@ -37,29 +38,33 @@ pub use summary::{PartitionSummary, UncutCounts};
 /// # Errors
 /// A parameter is not positive, or the skeleton has an edge without length, radius or node.
 pub fn partition(skeleton: &Skeleton, params: &PartitionParams) -> Result<Partition, PartitionError> {
-    Ok(lay_out(&Arc::new(skeleton.clone()), params)?.explicit())
+    Ok(lay_out(&Arc::new(skeleton.clone()), params, &())?.explicit())
 }
 
 /// Partitions a skeleton and returns the compact form.
 ///
 /// # Errors
-/// See [`partition`].
-pub fn lay_out(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Result<Layout, PartitionError> {
+/// See [`partition`]; `Cancelled` if the caller asks for a stop.
+pub fn lay_out(
+    skeleton: &Arc<Skeleton>,
+    params: &PartitionParams,
+    progress: &dyn Progress,
+) -> Result<Layout, PartitionError> {
     params.check()?;
     params::check_skeleton(skeleton)?;
     let mut params = params.clone();
     params.forbidden_cuts.extend(params.together.iter().flatten());
-    let usual = cut(skeleton, &params);
+    let usual = cut(skeleton, &params, progress)?;
     let large = usual.in_clusters_above(params.large);
     if large.is_empty() {
         return Ok(usual);
     }
     params.eager.extend(large);
-    let eager = cut(skeleton, &params);
+    let eager = cut(skeleton, &params, progress)?;
     Ok(if eager.largest_nodes() < usual.largest_nodes() { eager } else { usual })
 }
 
-fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
+fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams, progress: &dyn Progress) -> Result<Layout, PartitionError> {
     let adjacency = skeleton.adjacency();
     let chains = skeleton.chains(&adjacency);
     let courses = Courses { skeleton, chains: &chains };
@@ -67,6 +72,9 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
     let mut slots = Vec::with_capacity(courses.len());
     let mut uncut = Vec::new();
     for branch in 0..courses.len() as u32 {
+        if progress.is_cancelled() {
+            return Err(PartitionError::Cancelled);
+        }
         if let Some(reason) = cutter.slots(branch, &mut slots) {
             uncut.push((BranchId(branch), reason));
         }
@@ -77,7 +85,7 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams) -> Layout {
     let terminals = (0..courses.len() as u32).map(|branch| chains.ends(branch).map(terminal)).collect();
     drop(adjacency);
     let mut settler = settle::Settler::new(skeleton.nodes.len(), courses, params, slots, terminals);
-    uncut.extend(settler.settle());
+    uncut.extend(settler.settle(progress)?);
     let layout = Layout::new(Arc::clone(skeleton), settler, uncut);
-    layout.with(chains)
+    Ok(layout.with(chains))
 }

@@ -133,6 +133,9 @@ pub enum PartitionError {
         /// Its value.
         value: f64,
     },
+    /// The caller asked for a stop.
+    #[error("cancelled")]
+    Cancelled,
     /// An edge refers to a node that does not exist.
     #[error("edge {} joins node {}, which does not exist", edge.0, node.0)]
     NoSuchNode {

@@ -6,10 +6,11 @@
 
 use super::clearance::{Tip, tip_middle};
 use super::near::{Near, Obstacle, ObstacleKind, terminal_overrun};
-use super::params::PartitionParams;
+use super::params::{PartitionError, PartitionParams};
 use super::parts::UncutReason;
 use super::window::Slot;
 use anastomesh_mesh::geometry::{DisjointSets, Section};
+use anastomesh_mesh::progress::Progress;
 use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::{BranchId, NodeId};
 use rustc_hash::FxHashMap;
@@ -112,13 +113,19 @@ impl<'a> Settler<'a> {
     }
 
     /// Moves planes and drops cuts until every end is clear. Returns the reasons for dropped cuts, by branch.
-    pub fn settle(&mut self) -> Vec<(BranchId, UncutReason)> {
+    ///
+    /// # Errors
+    /// [`PartitionError::Cancelled`].
+    pub fn settle(&mut self, progress: &dyn Progress) -> Result<Vec<(BranchId, UncutReason)>, PartitionError> {
         let mut given_up = Vec::new();
         let mut dirty = vec![true; self.union.len()];
         loop {
             self.gather();
             let mut changed: Vec<u32> = Vec::new();
             for run in 0..self.runs.len() {
+                if progress.is_cancelled() {
+                    return Err(PartitionError::Cancelled);
+                }
                 let BranchSpan { branch, slots, root } = self.runs[run];
                 if !dirty[root as usize] {
                     continue;
@@ -146,7 +153,7 @@ impl<'a> Settler<'a> {
             }
             self.mark(&changed, &mut dirty);
         }
-        given_up
+        Ok(given_up)
     }
 
     /// Joins the pieces on both sides of dropped cuts and marks the clusters of all changed slots.

@@ -8,6 +8,7 @@ use super::check::PartitionFlaw;
 use super::parts::{PartitionWarning, UncutReason};
 use super::*;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3, point_segment, segment_segment};
+use anastomesh_mesh::progress::StopsAfter;
 use anastomesh_skeleton::{Edge, Node, NodeId};
 use std::ops::Range;
 
@@ -527,5 +528,17 @@ proptest! {
         for (x, y) in a.cut_arcs.iter().zip(&b.cut_arcs) {
             prop_assert!((x[0] * scale - y[0]).abs() < 1e-9 * y[1] && (x[1] * scale - y[1]).abs() < 1e-9 * y[1]);
         }
+    }
+}
+
+#[test]
+fn a_partition_can_be_cancelled() {
+    let points: Vec<[f64; 3]> = (0..40).map(|i| [10.0 * f64::from(i), 0.0, 0.0]).collect();
+    let s = Arc::new(polyline(points));
+    let asked = StopsAfter::new(usize::MAX);
+    assert!(lay_out(&s, &PartitionParams::default(), &asked).is_ok());
+    for times in 0..asked.asked() {
+        let stopped = lay_out(&s, &PartitionParams::default(), &StopsAfter::new(times));
+        assert_eq!(stopped.err(), Some(PartitionError::Cancelled), "after {times} of {}", asked.asked());
     }
 }

@@ -93,7 +93,8 @@ impl RunContext<'_> {
     /// # Errors
     /// When the store fails, or the run is told to stop.
     fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: RetryStrategy) -> Result<(), RunError> {
-        let (plan, shop, partition) = (self.shop.plan, self.shop, &blocks.partition);
+        let (plan, partition) = (self.shop.plan, &blocks.partition);
+        let shop = self.shop.among(partition.clusters_len());
         let mut again: BTreeMap<u32, u32> = BTreeMap::new();
         for &[a, b] in meetings {
             again.entry(a).or_insert(b);

@@ -1,5 +1,7 @@
 //! The parameters with which a block is tried, one after the other, before its cuts are touched.
 
+use super::block_budget::BlockBudget;
+use super::effort::Effort;
 use super::once::{self, Connector};
 use super::plan::{JointStyle, MeshPlan};
 use super::tips;
@@ -17,6 +19,8 @@ pub struct Tried {
     pub failures: Vec<BlockError>,
     /// Name of the successful attempt.
     pub way: String,
+    /// Operations of all attempts, as counted by budgets.
+    pub spent: u64,
 }
 
 /// A way of making a cluster.
@@ -164,11 +168,12 @@ fn worst_ratio(block: &Finished) -> f64 {
 }
 
 /// Makes a block in the first way that does it well: nothing fails, no tetrahedron is flat or slim, and the block's own check
-/// finds no fault. Else the best of those that came out is taken. When nothing helps, the failure of the first way counts: it
+/// finds no fault. Else the best of those that came out is taken. Ends with the attempts, or once `is_over`. When nothing helps, the failure of the first way counts: it
 /// is what the dump of the input reproduces.
 fn first_good(
     block: &str,
     attempts: Vec<BlockAttempt>,
+    is_over: impl Fn() -> bool,
     mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
@@ -180,11 +185,13 @@ fn first_good(
             best.params.allow_fused != attempt.params.allow_fused
                 || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).is_not_flat(made)
         };
-        if best.as_ref().is_some_and(will_do) {
+        if best.as_ref().is_some_and(will_do) || tried > 0 && is_over() {
             break;
         }
         match make(&attempt.params) {
-            Ok(made) if bar.is_passed(&made) => return Tried { result: Ok(made), failures, way: attempt.name },
+            Ok(made) if bar.is_passed(&made) => {
+                return Tried { result: Ok(made), failures, way: attempt.name, spent: 0 };
+            }
             Ok(made) => {
                 let before = failures.len();
                 let (ratio, dihedral) = (made.certificate.worst_ratio(), made.certificate.least_dihedral());
@@ -200,9 +207,9 @@ fn first_good(
     match best {
         Some((before, attempt, made)) => {
             failures.truncate(before);
-            Tried { result: Ok(made), failures, way: attempt.name }
+            Tried { result: Ok(made), failures, way: attempt.name, spent: 0 }
         }
-        None => Tried { result: Err(failures.swap_remove(0)), failures, way: String::new() },
+        None => Tried { result: Err(failures.swap_remove(0)), failures, way: String::new(), spent: 0 },
     }
 }
 
@@ -211,53 +218,69 @@ fn first_good(
 pub fn cluster(
     id: ClusterId,
     cluster: &Cluster,
-    plan: &MeshPlan,
-    overlapping: bool,
-    first: RetryStrategy,
+    (plan, effort): (&MeshPlan, Effort),
+    (overlapping, first): (bool, RetryStrategy),
     original: impl Fn(NodeId) -> u32,
     watch: &Watch,
 ) -> Tried {
     let name = format!("cluster {}", id.0);
+    let budget = BlockBudget::of(id, cluster, plan, effort, watch);
     let made = |cluster: &Cluster| {
-        let make = |params: &BlockParams| once::cluster(id, cluster, params, &original, watch);
-        first_good(&name, attempts(plan, overlapping, first), make)
+        let make = |params: &BlockParams| {
+            budget.attempt(cluster, params, |watch| once::cluster(id, cluster, params, &original, watch))
+        };
+        first_good(&name, attempts(plan, overlapping, first), || budget.is_over(), make)
     };
     let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
+    let is_over = || budget.is_over();
+    let mut tried_moves = Vec::new();
     let Some((block, way, failures)) =
-        [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, made))
+        [false, true].into_iter().find_map(|all| with_tips_moved(cluster, &open, all, is_over, &mut tried_moves, made))
     else {
-        return tried;
+        return Tried { spent: budget.spent(), ..tried };
     };
     let failures = [tried.failures, tried.result.err().into_iter().collect(), failures].concat();
-    Tried { result: Ok(block), failures, way }
+    Tried { result: Ok(block), failures, way, spent: budget.spent() }
 }
 
 /// Makes a cluster with its tips moved until all are capped: the way in which it came out, and what failed in it. `all`: every
-/// tip that could not be capped at some time, by the same; else a tip stays where it could be capped.
+/// tip that could not be capped at some time, by the same; else a tip stays where it could be capped. `tried`: moves that
+/// failed, and the tips that they left uncapped. They are not repeated.
 fn with_tips_moved(
     cluster: &Cluster,
     uncapped: &[u32],
     all: bool,
+    is_over: impl Fn() -> bool,
+    tried: &mut Vec<(Vec<(u32, f64)>, Vec<u32>)>,
     made: impl Fn(&Cluster) -> Tried,
 ) -> Option<(Finished, String, Vec<BlockError>)> {
     let mut open = uncapped.to_vec();
     let mut moves: Vec<(u32, f64)> = Vec::new();
-    for radii in tips::MOVES.into_iter().take_while(|_| !uncapped.is_empty()) {
+    for radii in tips::MOVES.into_iter().take_while(|_| !uncapped.is_empty() && !is_over()) {
         moves.retain(|(end, _)| !open.contains(end) && !all);
         moves.extend(open.iter().map(|&end| (end, radii)));
-        let Some(moved) = tips::moved(cluster, &moves) else { continue };
-        let again = made(&moved);
-        let still = tips::uncapped(&moved, &again.result, &again.failures);
-        match again.result {
-            Ok(block) if still.is_empty() => {
+        let known = tried.iter().find(|(tried, _)| *tried == moves).map(|(_, still)| still.clone());
+        let still = if let Some(still) = known {
+            still
+        } else {
+            let Some(moved) = tips::moved(cluster, &moves) else { continue };
+            let again = made(&moved);
+            let still = tips::uncapped(&moved, &again.result, &again.failures);
+            if let Ok(block) = again.result
+                && still.is_empty()
+            {
                 return Some((block, format!("{}, {}", tips::described(&moves), again.way), again.failures));
             }
+            tried.push((moves.clone(), still.clone()));
+            still
+        };
+        if all {
             // Another one may be in the way now.
-            _ if all => open.extend(still.into_iter().filter(|end| !uncapped.contains(end))),
+            open.extend(still.into_iter().filter(|end| !uncapped.contains(end)));
+        } else if !still.is_empty() {
             // What failed otherwise says nothing about tips.
-            _ if !still.is_empty() => open = still,
-            _ => {}
+            open = still;
         }
         open.sort_unstable();
         open.dedup();
@@ -282,13 +305,18 @@ fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Res
         params: BlockParams { first_division, ..plan.block_params() },
     };
     let mut before: Vec<BlockError> = Vec::new();
-    let mut tried = first_good(&format!("connector {}", id.0), (0..DIVISIONS).map(way).collect(), |params| {
-        let (made, divisions) = make(params)?;
-        // A division that fails gives way to the next one at once.
-        let failed = |attempt| BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: vec![attempt] };
-        before.extend(divisions.into_iter().map(failed));
-        Ok(made)
-    });
+    let mut tried = first_good(
+        &format!("connector {}", id.0),
+        (0..DIVISIONS).map(way).collect(),
+        || false,
+        |params| {
+            let (made, divisions) = make(params)?;
+            // A division that fails gives way to the next one at once.
+            let failed = |attempt| BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: vec![attempt] };
+            before.extend(divisions.into_iter().map(failed));
+            Ok(made)
+        },
+    );
     tried.failures.extend(before);
     tried
 }
@@ -315,9 +343,12 @@ mod tests {
                 name: first_division.to_string(),
                 params: BlockParams { first_division, ..usual },
             };
-            first_good("block", (0..results.len()).map(way).collect(), |params| {
-                results[params.first_division].map(block).ok_or_else(failed)
-            })
+            first_good(
+                "block",
+                (0..results.len()).map(way).collect(),
+                || false,
+                |params| results[params.first_division].map(block).ok_or_else(failed),
+            )
         };
         let of = |results: &[Option<f64>]| {
             let Tried { result, failures, .. } = try_all(results);
@@ -357,12 +388,60 @@ mod tests {
         let way =
             |first_division| BlockAttempt { name: String::new(), params: BlockParams { first_division, ..usual } };
         let mut asked = 0;
-        let tried = first_good("block", (0..slim.len()).map(way).collect(), |params| {
-            asked += 1;
-            Ok(slim[params.first_division].clone())
-        });
+        let tried = first_good(
+            "block",
+            (0..slim.len()).map(way).collect(),
+            || false,
+            |params| {
+                asked += 1;
+                Ok(slim[params.first_division].clone())
+            },
+        );
         assert_eq!(asked, 1 + WAYS_OUT_OF_SLIM);
         assert_eq!((tried.result.ok(), tried.failures.len()), (Some(slim[1].clone()), 1));
+    }
+
+    #[test]
+    fn attempts_end_with_the_budget() {
+        let usual = MeshPlan::default().block_params();
+        let asked = std::cell::Cell::new(0);
+        let attempts = || vec![BlockAttempt { name: String::new(), params: usual }; 5];
+        let failed = |_: &BlockParams| {
+            asked.set(asked.get() + 1);
+            Err(BlockError::Parameter { name: "none", value: f64::from(asked.get()) })
+        };
+        let Tried { result, failures, .. } = first_good("block", attempts(), || asked.get() >= 2, failed);
+        // The first failure counts, and the attempt that begins within the budget is not the last word.
+        assert_eq!(result.err(), Some(BlockError::Parameter { name: "none", value: 1.0 }));
+        assert_eq!((asked.get(), failures.len()), (2, 1));
+        // One attempt is made in any case, or there would be no reason to report.
+        asked.set(7);
+        assert!(first_good("block", attempts(), || true, failed).result.is_err());
+        assert_eq!(asked.get(), 8);
+    }
+
+    #[test]
+    fn moved_tips_are_tried_once_each() {
+        let cluster = crate::block::fixtures::bifurcation(3);
+        let end = (0..).zip(&cluster.ends).find(|(_, end)| matches!(end.kind, crate::partition::EndKind::Terminal(_)));
+        let (tip, _) = end.expect("a tip");
+        let made = std::cell::RefCell::new(Vec::new());
+        let fails = |moved: &Cluster| {
+            made.borrow_mut().push(moved.ends[tip as usize].section.origin);
+            let failure = BlockError::Parameter { name: "none", value: 0.0 };
+            Tried { result: Err(failure), failures: Vec::new(), way: String::new(), spent: 0 }
+        };
+        let mut tried = Vec::new();
+        for all in [false, true] {
+            assert!(with_tips_moved(&cluster, &[tip], all, || false, &mut tried, fails).is_none());
+        }
+        let count = made.borrow().len();
+        assert!(count > 2 && count <= tips::MOVES.len(), "{count}");
+        for (i, place) in made.borrow().iter().enumerate() {
+            assert!(!made.borrow()[..i].contains(place));
+        }
+        assert!(with_tips_moved(&cluster, &[tip], false, || true, &mut Vec::new(), fails).is_none());
+        assert_eq!(made.borrow().len(), count);
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub enum RunError {
     Root(#[from] NotATerminal),
     /// The network could not be partitioned.
     #[error(transparent)]
-    Partition(#[from] PartitionError),
+    Partition(PartitionError),
     /// Memory or disk space is insufficient.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
@@ -39,6 +39,12 @@ pub enum RunError {
     /// The run was cancelled. Finished blocks are in the store.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<PartitionError> for RunError {
+    fn from(error: PartitionError) -> Self {
+        if error == PartitionError::Cancelled { Self::Cancelled } else { Self::Partition(error) }
+    }
 }
 
 impl From<StoreError> for RunError {

@@ -6,6 +6,7 @@ use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockInput, BlockParams};
 use crate::partition::{Cluster, Cut, Layout};
+use crate::surface::estimated_cells;
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::Skeleton;
 
@@ -35,6 +36,13 @@ const WALL: f64 = 4.1;
 const BYTES_PER_TET: f64 = 420.0;
 const BYTES_PER_BLOCK: f64 = 4e6;
 
+/// Bytes per grid cell that the wall crosses, with the triangles made from it.
+const BYTES_PER_CELL: f64 = 300.0;
+
+/// Operations per tetrahedron, and per grid cell that the wall crosses.
+const PER_TET: f64 = 60.0;
+const PER_CELL: f64 = 80.0;
+
 /// Bytes of a tetrahedron in the store and in a VTU, its share of points and boundary faces included; of a VTU whose vertex
 /// numbers take 64 bits, and are compressed.
 const STORED_PER_TET: f64 = 17.0;
@@ -57,6 +65,8 @@ pub struct Estimate {
     pub stored_bytes: u64,
     /// Bytes of the mesh as a VTU.
     pub written_bytes: u64,
+    /// Operations of all blocks, as counted by budgets: about 0.05 µs each.
+    pub operations: f64,
 }
 
 impl Estimate {
@@ -91,6 +101,7 @@ impl Estimate {
         let mut all = Self::default();
         for cost in costs {
             all.tets += cost.tets;
+            all.operations += cost.operations;
             all.largest_block_tets = all.largest_block_tets.max(cost.tets);
             all.largest_block_bytes = all.largest_block_bytes.max(cost.bytes);
         }
@@ -173,7 +184,21 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
     let finer: f64 = cluster.fine.iter().map(|fork| fork.factor.powf(-POWER_OF_FORK) - 1.0).sum();
-    of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer)
+    let cost = of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer);
+    let voxel = 2.0 * thin / plan.rho;
+    let cells = estimated_cells(&cluster.tubes, voxel);
+    let bytes = cost.bytes.max((BYTES_PER_BLOCK + BYTES_PER_CELL * cells) as u64);
+    Cost { operations: cost.operations + PER_CELL * cells, bytes, ..cost }
+}
+
+/// Cost of an attempt at a cluster with other parameters than the plan's.
+pub fn attempt_cost(cluster: &Cluster, plan: &MeshPlan, params: &BlockParams) -> Cost {
+    let BlockParams { rho, voxel_factor, follow, stretch, core, layers, .. } = *params;
+    let joint = plan.joint;
+    cluster_cost(
+        cluster,
+        &MeshPlan { rho: rho / voxel_factor, follow, stretch, core, layers, joint, ..MeshPlan::default() },
+    )
 }
 
 pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
@@ -214,5 +239,5 @@ fn of_layers(radii: f64, plan: &MeshPlan) -> f64 {
 
 fn of_tets(tets: f64) -> Cost {
     // Casts of what is too large, or no number, end at the largest integer.
-    Cost { tets, bytes: (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64 }
+    Cost { tets, bytes: (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64, operations: PER_TET * tets }
 }

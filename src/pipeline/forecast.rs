@@ -2,8 +2,9 @@
 
 use super::cures::partition_params;
 use super::error::RunError;
-use super::estimate::Estimate;
+use super::estimate::{Estimate, cluster_cost};
 use super::plan::MeshPlan;
+use super::routes::tangled_clusters;
 use crate::partition;
 use anastomesh_network::split;
 use anastomesh_skeleton::Skeleton;
@@ -13,6 +14,12 @@ use std::sync::Arc;
 
 /// Tetrahedra that a thread makes, checks and writes per second: as measured with kidneys.
 const TETS_PER_SECOND: f64 = 3.1e5;
+/// Operations per tetrahedron in that figure, and seconds per operation beyond: walls of wide vessels contoured at the
+/// resolution of thin ones.
+const OPERATIONS_PER_TET: f64 = 100.0;
+const SECONDS_PER_OPERATION: f64 = 5e-8;
+/// Attempts at a cluster in which vessels overlap, as most of them fail as they are.
+const ATTEMPTS: f64 = 4.0;
 /// Memory of the program itself, with a network of some thousand edges.
 const AT_LEAST: u64 = 60_000_000;
 
@@ -27,6 +34,10 @@ pub struct Forecast {
     pub largest_nodes: usize,
     /// Tetrahedra, memory and disk.
     pub estimate: Estimate,
+    /// Clusters in which vessels overlap. Most of them take several attempts, or fail.
+    pub overlapping: usize,
+    /// Operations of those attempts beyond the first.
+    pub retry_operations: f64,
 }
 
 impl Forecast {
@@ -37,8 +48,15 @@ impl Forecast {
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
         let (network, _) = split(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
-        let partition = partition::lay_out(&Arc::new(network), &params)?.sized(plan.size_at.clone());
+        let network = Arc::new(network);
+        let partition = partition::lay_out(&network, &params, &())?.sized(plan.size_at.clone());
+        let overlaps = network.overlaps(&network.adjacency());
+        let tangled = tangled_clusters(&network, &partition, &overlaps);
+        let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled);
+        let again: f64 = again.map(|(cluster, _)| cluster_cost(&cluster, plan).operations).sum();
         Ok(Self {
+            overlapping: tangled.iter().filter(|tangled| **tangled).count(),
+            retry_operations: (ATTEMPTS - 1.0) * again,
             clusters: partition.clusters_len(),
             connectors: partition.cuts_len(),
             largest_nodes: partition.largest_nodes(),
@@ -48,7 +66,9 @@ impl Forecast {
 
     /// Seconds on so many threads.
     pub fn seconds(&self, threads: usize) -> f64 {
-        self.estimate.tets / TETS_PER_SECOND / threads.max(1) as f64
+        let Estimate { tets, operations, .. } = self.estimate;
+        let more = (operations - OPERATIONS_PER_TET * tets).max(0.0) + self.retry_operations;
+        (tets / TETS_PER_SECOND + SECONDS_PER_OPERATION * more) / threads.max(1) as f64
     }
 
     /// Bytes of memory on so many threads.

@@ -4,6 +4,7 @@ use std::io;
 use std::sync::Arc;
 
 use super::attempts::{self, RetryStrategy, Tried};
+use super::effort::Effort;
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
@@ -30,6 +31,20 @@ pub struct Workshop<'a> {
     pub skeleton: &'a Arc<Skeleton>,
     pub plan: &'a MeshPlan,
     pub store: &'a Store,
+    /// Effort for each cluster.
+    pub effort: Effort,
+}
+
+impl<'a> Workshop<'a> {
+    /// Input of all blocks of a run.
+    pub fn new(skeleton: &'a Arc<Skeleton>, plan: &'a MeshPlan, store: &'a Store) -> Self {
+        Self { skeleton, plan, store, effort: Effort::full(1) }
+    }
+
+    /// The same with the effort for each of so many clusters. Not to be called while blocks are made.
+    pub fn among(self, clusters: usize) -> Self {
+        Self { effort: self.store.ledger().effort(clusters), ..self }
+    }
 }
 
 impl Workshop<'_> {
@@ -51,7 +66,11 @@ impl Workshop<'_> {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        self.keep(key, attempts::cluster(id, cluster, plan, overlapping, first, original, watch))
+        let tried = attempts::cluster(id, cluster, (plan, self.effort), (overlapping, first), original, watch);
+        if tried.result.is_err() {
+            self.store.ledger().add(tried.spent);
+        }
+        self.keep(key, tried)
     }
 
     /// A connector between the discs that the vessel alone gives.
@@ -79,7 +98,7 @@ impl Workshop<'_> {
         self.keep(key, attempts::connector(id, cut, ends.each_ref().map(ConnectorEnd::from), self.plan))
     }
 
-    fn keep(&self, key: Key, Tried { result, failures, way }: Tried) -> Result<BlockResult, StoreError> {
+    fn keep(&self, key: Key, Tried { result, failures, way, .. }: Tried) -> Result<BlockResult, StoreError> {
         let mut finished = match result {
             Ok(finished) => finished,
             Err(error) => return Ok(Err(Box::new(error))),

@@ -2,12 +2,14 @@
 
 mod apart;
 mod attempts;
+mod block_budget;
 mod blocks;
 mod caps;
 mod carried;
 mod cures;
 mod data;
 mod describe;
+mod effort;
 mod error;
 mod estimate;
 mod flow_error;

@@ -59,15 +59,17 @@ impl RunContext<'_> {
         loop {
             let partition = self.partition(&cures, &together)?;
             if round == 0 {
-                fits(&Estimate::of(&partition, self.shop.plan))?;
+                let estimate = Estimate::of(&partition, self.shop.plan);
+                self.shop.store.ledger().expect(estimate.operations);
+                fits(&estimate)?;
                 if before.is_none() {
                     sizes::announce(self.shop.skeleton, &partition, self.shop.plan, self.progress);
                 }
             }
             let blocks = self.pass(partition, before)?;
             self.tell_cured(&blocks, &mut told, &mut retries);
-            let found =
-                if round < MAX_PARTITION_CHANGES { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
+            let may_change = round < MAX_PARTITION_CHANGES && !self.shop.store.ledger().is_hopeless();
+            let found = if may_change { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
             if found.is_empty() {
                 return Ok(Blocks { retries, ..blocks });
             }
@@ -89,14 +91,14 @@ impl RunContext<'_> {
         cures: &BTreeMap<BranchId, Cure>,
         together: &BTreeSet<[BranchId; 2]>,
     ) -> Result<Layout, RunError> {
-        let (Workshop { skeleton, plan, store }, progress) = (self.shop, self.progress);
+        let (Workshop { skeleton, plan, store, .. }, progress) = (self.shop, self.progress);
         let params = partition_params(skeleton, plan, cures, together);
         let key = || {
             let mut key = KeyMaker::new("partition");
             key.text(&format!("{:?} {params:?}", fingerprint(skeleton)));
             key.finish()
         };
-        let cut = || partition::lay_out(skeleton, &params).map_err(RunError::from);
+        let cut = || partition::lay_out(skeleton, &params, progress).map_err(RunError::from);
         let kept =
             || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)).sized(plan.size_at.clone()));
         self.clock.time(progress, Stage::Partition, 0, kept)
@@ -117,7 +119,7 @@ impl RunContext<'_> {
 
     /// All blocks of a partition; none needs another, unless joints are woven.
     fn pass(&mut self, partition: Layout, before: Option<Blocks>) -> Result<Blocks, RunError> {
-        let shop = self.shop;
+        let shop = self.shop.among(partition.clusters_len());
         let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps);
         let is_woven = shop.plan.joint == JointStyle::Woven;
         let Carried { clusters, connectors, cured, times } = Carried::over(before, &partition, &tangled, is_woven);

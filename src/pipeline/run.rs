@@ -236,7 +236,7 @@ impl<'a, 'b> Job<'a, 'b> {
     }
 
     fn shop(&self) -> Workshop<'_> {
-        Workshop { skeleton: &self.skeleton, plan: self.plan, store: self.store }
+        Workshop::new(&self.skeleton, self.plan, self.store)
     }
 
     fn run<'c>(&'c self, clock: &'c mut Clock) -> RunContext<'c> {

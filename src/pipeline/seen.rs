@@ -174,7 +174,7 @@ mod tests {
         let overlaps = skeleton.overlaps(&skeleton.adjacency());
         let patches = terminals::assign(&skeleton, &[]).expect("terminals");
         let (counts, mut clock) = (Counts::default(), Clock::default());
-        let shop = Workshop { skeleton: &skeleton, plan: &plan, store: &store };
+        let shop = Workshop::new(&skeleton, &plan, &store);
         let mut run = RunContext { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };
         let fits = |_: &_| Ok(());
         let first = run.build(&BTreeSet::new(), None, &fits).expect("blocks");

@@ -59,7 +59,7 @@ pub fn make_share(
     let mut clock = Clock::default();
     let skeleton = split_shared(&network).0;
     drop(network);
-    let shop = Workshop { skeleton: &skeleton, plan, store };
+    let shop = Workshop::new(&skeleton, plan, store);
     let tasks = clock.time(progress, Stage::Prepare, 0, || Tasks::of(&shop, progress))?;
     let mut run = RunContext { overlaps: &Overlaps::default(), shop, progress, clock: &mut clock };
     let mut report = run.share(shard, &tasks, fits)?;
@@ -113,6 +113,7 @@ impl RunContext<'_> {
         let partition = self.partition(&BTreeMap::new(), &tasks.together)?;
         fits(&tasks.estimate)?;
         let clusters = partition.clusters_len();
+        let shop = shop.among(clusters);
         let own = dealt(&tasks.weights, shard);
         let cost = |&i: &u32| match i.checked_sub(clusters as u32) {
             None => cluster_cost(&partition.cluster(ClusterId(i)), shop.plan),

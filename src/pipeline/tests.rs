@@ -1,5 +1,6 @@
 //! The way through all stages, and what happens when a block fails.
 
+use super::effort::Effort;
 use super::*;
 use crate::block::{Finished, Record, encode};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
@@ -151,9 +152,8 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
         attempts::cluster(
             ClusterId(i as u32),
             cluster,
-            plan,
-            false,
-            attempts::RetryStrategy::Usual,
+            (plan, Effort::full(1)),
+            (false, attempts::RetryStrategy::Usual),
             |node| node.0,
             &anastomesh_tet::parts::Watch::NOBODY,
         )

@@ -264,8 +264,17 @@ time     3 min (blocks 2 min, write 22 s)
             largest_block_bytes: 30_000_000,
             stored_bytes: 3_077_000_000,
             written_bytes: 4_163_000_000,
+            operations: 0.0,
         };
-        let found = forecast(&Forecast { clusters: 59_000, connectors: 58_999, largest_nodes: 12, estimate }, 2);
+        let found = Forecast {
+            clusters: 59_000,
+            connectors: 58_999,
+            largest_nodes: 12,
+            estimate,
+            overlapping: 0,
+            retry_operations: 0.0,
+        };
+        let found = forecast(&found, 2);
         let expected = "\
 blocks   59,000 clusters (largest 12 nodes), 58,999 connectors
 mesh     about 181.0 million tetrahedra

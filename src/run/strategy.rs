@@ -277,7 +277,7 @@ impl<'a> Meshing<'a, '_> {
         let mut retractions = 0;
         loop {
             let made = mesh_shared(self.store, &networks.network, self.plan, self.fits, self.progress);
-            let told = if retractions < MAX_RETRACTIONS && self.retracts {
+            let told = if retractions < MAX_RETRACTIONS && self.retracts && !self.store.is_hopeless() {
                 let tips = self.open_tips(&made, networks.prepare.measured);
                 networks.retract(&tips)
             } else {

@@ -12,9 +12,11 @@ use super::relax::{Hold, Level, Relaxation};
 use super::shared_disc::SharedDisc;
 use super::sizes::{Finer, GROWTH};
 use super::{Field, SizedWall, SurfaceParams};
-use anastomesh_mesh::geometry::{Point3, Section, Vec3};
+use anastomesh_mesh::budget::Stop;
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Section, Vec3};
 use anastomesh_mesh::{Kept, TriMesh};
 use anastomesh_skeleton::NodeId;
+use anastomesh_tet::parts::Watch;
 use weave::weave;
 
 /// Closed wall with flat caps at its terminals.
@@ -36,6 +38,9 @@ pub enum CapError {
         /// Vertices of the edge; both are equal if a vertex is at fault.
         edge: [u32; 2],
     },
+    /// The caller asked for a stop, or the budget is exceeded.
+    #[error(transparent)]
+    Stopped(#[from] Stop),
     /// One end could not be capped.
     #[error("end {end} at {origin} cannot be capped: {reason}")]
     End {
@@ -77,6 +82,12 @@ const MARGINS: [f64; 3] = [0.4, 0.2, 0.05];
 const RELAXED: f64 = 3.5;
 /// Maximum tip length, in radii. Longer tips occur only if the vessel runs into another one.
 const LONGEST_TIP: f64 = 3.0;
+/// Maximum number of ends whose tips are searched without a tree.
+const FEW: usize = 6;
+/// Operations per end besides those of search and relaxation, and faces searched in the time of an operation, as counted by
+/// budgets.
+const PER_END: usize = 300;
+const FACES_PER_OPERATION: usize = 8;
 /// Maximum distance from the axis, in radii. Anything beyond belongs to another vessel.
 const WIDTH: f64 = 1.1;
 
@@ -103,61 +114,102 @@ impl Closing<'_> {
     }
 }
 
-/// Replaces the tips beyond the `ends` by flat discs. The wall is a level set of `field` and was created with `params`.
+/// Replaces the tips beyond the `ends` by flat discs. The wall is a level set of `field` and was created with `params`. If
+/// `may_leave`, terminals that cannot be capped are left open.
 ///
 /// # Errors
-/// The surface is not closed, or a tip is missing, joined to another vessel, or does not leave one loop.
+/// The surface is not closed, or a tip is missing, joined to another vessel, or does not leave one loop. `Stopped` if the
+/// watch says so.
 pub fn cap_terminals(
     wall: &SizedWall,
     field: &mut Field,
     ends: &[Closing],
     params: &SurfaceParams,
+    may_leave: bool,
+    watch: &Watch,
 ) -> Result<CappedSurface, CapError> {
-    let mut closed = closed(wall, ends, params, &MARGINS);
-    // An end closed earlier may have removed the wall between two ends, so smaller margins follow.
-    for first in 1..MARGINS.len() {
-        if !matches!(closed, Err(CapError::End { reason: CapFailure::Loops, .. })) {
-            break;
+    let cuts = Cuts { wall, ends, tips: tips(wall, ends, watch)?, params, watch };
+    let mut kept: Vec<u32> = (0..ends.len() as u32).collect();
+    let cutter = loop {
+        match cuts.closed(&kept) {
+            Ok(cutter) => break cutter,
+            // Terminates, as each iteration removes one end.
+            Err(CapError::End { end, node: Some(_), .. }) if may_leave => kept.retain(|&other| other != end),
+            Err(error) => return Err(error),
         }
-        closed = self::closed(wall, ends, params, &MARGINS[first..]).or(closed);
-    }
-    let (mesh, sizes, cap) = closed?.finish();
-    relaxed(&mesh, sizes, &cap, field, ends, params, &wall.finer)
+    };
+    let (mesh, sizes, cap) = cutter.finish();
+    let ends: Vec<&Closing> = kept.iter().map(|&end| &ends[end as usize]).collect();
+    relaxed(&mesh, sizes, &cap, field, (&ends, params, &wall.finer), watch)
 }
 
-/// Closes all ends of the wall. Strips start at the first of `margins` that works.
-fn closed<'a>(
+/// Tip of each end: the triangle through which the axis leaves the vessel beyond the plane.
+fn tips(wall: &SizedWall, ends: &[Closing], watch: &Watch) -> Result<Vec<Option<u32>>, CapError> {
+    let search = TipSearch::of(&wall.mesh, ends.len());
+    ends.iter()
+        .map(|end| {
+            let (tip, looked) = search.tip(&end.section);
+            watch.spend(looked / FACES_PER_OPERATION)?;
+            Ok(tip)
+        })
+        .collect()
+}
+
+/// Wall to be cut at its ends.
+struct Cuts<'a> {
     wall: &'a SizedWall,
-    ends: &[Closing],
-    params: &SurfaceParams,
-    margins: &[f64],
-) -> Result<Cutter<'a>, CapError> {
-    let surface = &wall.mesh;
-    let mut cutter = Cutter {
-        surface: &wall.halves,
-        longest: longest_edge(surface),
-        removed: vec![false; surface.triangles.len()],
-        points: surface.points.clone(),
-        sizes: wall.sizes.clone(),
-        added: Vec::new(),
-        cap: Vec::new(),
-    };
-    for (i, closing) in ends.iter().enumerate() {
-        cutter.cut(closing, i as u32, closing.edge(params), margins).map_err(|reason| CapError::End {
-            end: i as u32,
-            node: closing.node,
-            origin: closing.section.origin,
-            reason,
-        })?;
+    ends: &'a [Closing<'a>],
+    /// Tip of each end.
+    tips: Vec<Option<u32>>,
+    params: &'a SurfaceParams,
+    watch: &'a Watch<'a>,
+}
+
+impl<'a> Cuts<'a> {
+    /// Closes some of the ends.
+    fn closed(&self, kept: &[u32]) -> Result<Cutter<'a>, CapError> {
+        let mut closed = self.with_margins(kept, &MARGINS);
+        // An end closed earlier may have removed the wall between two ends, so smaller margins follow.
+        for first in 1..MARGINS.len() {
+            if !matches!(closed, Err(CapError::End { reason: CapFailure::Loops, .. })) {
+                break;
+            }
+            closed = self.with_margins(kept, &MARGINS[first..]).or(closed);
+        }
+        closed
     }
-    Ok(cutter)
+
+    /// Closes some of the ends. Strips start at the first of `margins` that works.
+    fn with_margins(&self, kept: &[u32], margins: &[f64]) -> Result<Cutter<'a>, CapError> {
+        let wall = self.wall;
+        self.watch.spend(wall.mesh.points.len() / FACES_PER_OPERATION)?;
+        let mut cutter = Cutter {
+            surface: &wall.halves,
+            removed: vec![false; wall.mesh.triangles.len()],
+            points: wall.mesh.points.clone(),
+            sizes: wall.sizes.clone(),
+            added: Vec::new(),
+            cap: Vec::new(),
+        };
+        for &end in kept {
+            self.watch.spend(PER_END)?;
+            let (closing, tip) = (&self.ends[end as usize], self.tips[end as usize]);
+            let done = tip.ok_or(CapFailure::NoTip).and_then(|tip| {
+                let edge = closing.edge(self.params);
+                cutter.cut(closing, end, tip, edge, margins)
+            });
+            done.map_err(|reason| {
+                let Closing { node, section, .. } = *closing;
+                CapError::End { end, node, origin: section.origin, reason }
+            })?;
+        }
+        Ok(cutter)
+    }
 }
 
 /// Surface during capping.
 struct Cutter<'a> {
     surface: &'a HalfEdges,
-    /// Length of the longest edge.
-    longest: f64,
     removed: Vec<bool>,
     points: Vec<Point3>,
     /// Target edge length at each point.
@@ -168,9 +220,8 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     /// Replaces one tip by its disc.
-    fn cut(&mut self, closing: &Closing, end: u32, edge: f64, margins: &[f64]) -> Result<(), CapFailure> {
+    fn cut(&mut self, closing: &Closing, end: u32, seed: u32, edge: f64, margins: &[f64]) -> Result<(), CapFailure> {
         let section = &closing.section;
-        let seed = self.tip(section).ok_or(CapFailure::NoTip)?;
         let rim = self.opened(section, seed, edge, margins)?;
         if rim.iter().any(|&v| section.height(&self.points[v as usize]) > LONGEST_TIP * section.radius) {
             return Err(CapFailure::Merged);
@@ -205,36 +256,6 @@ impl Cutter<'_> {
 
     fn triangle(&self, face: u32) -> [Point3; 3] {
         [0, 1, 2].map(|i| self.points[self.surface.from(3 * face + i) as usize])
-    }
-
-    /// Returns the triangle through which the axis leaves the vessel beyond the plane.
-    fn tip(&self, section: &Section) -> Option<u32> {
-        let (u, w) = section.frame();
-        let reach = LONGEST_TIP * section.radius;
-        let mut best = (reach, None);
-        let far = (reach + self.longest).powi(2);
-        for face in 0..self.removed.len() as u32 {
-            let corner = self.points[self.surface.from(3 * face) as usize];
-            if (corner - section.origin).norm_squared() > far {
-                continue;
-            }
-            let local = self.triangle(face).map(|p| {
-                let d = p - section.origin;
-                Vec3::new(d.dot(&u), d.dot(&w), d.dot(&section.axis))
-            });
-            let side = |a: &Vec3, b: &Vec3| a.x * b.y - a.y * b.x;
-            let [a, b, c] = &local;
-            let (wa, wb, wc) = (side(b, c), side(c, a), side(a, b));
-            let total = wa + wb + wc;
-            // An exit is counter-clockwise seen from above, along the axis.
-            if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 && total > 0.0 {
-                let height = (wa * a.z + wb * b.z + wc * c.z) / total;
-                if height > 0.0 && height < best.0 {
-                    best = (height, Some(face));
-                }
-            }
-        }
-        best.1
     }
 
     /// Marks the connected triangles around `seed` above `-margin` as removed, within the vessel's own cylinder. If
@@ -357,6 +378,63 @@ impl Cutter<'_> {
     }
 }
 
+/// Search for tips: faces of a wall by the place of their first corner.
+struct TipSearch<'a> {
+    surface: &'a TriMesh,
+    /// Length of the longest edge.
+    longest: f64,
+    /// Search tree over first corners; `None` for few ends.
+    tree: Option<Bvh>,
+}
+
+impl<'a> TipSearch<'a> {
+    fn of(surface: &'a TriMesh, ends: usize) -> Self {
+        let corner = |t: &[u32; 3]| Aabb::of_points([&surface.points[t[0] as usize]]);
+        let boxes = || surface.triangles.iter().map(corner).collect::<Vec<Aabb>>();
+        Self { surface, longest: longest_edge(surface), tree: (ends > FEW).then(|| Bvh::new(&boxes())) }
+    }
+
+    /// Faces whose first corner may lie within a distance of a point, in ascending order.
+    fn near(&self, p: &Point3, distance: f64) -> Vec<u32> {
+        let Some(tree) = &self.tree else { return (0..self.surface.triangles.len() as u32).collect() };
+        let mut found = Vec::new();
+        tree.query(&Aabb::of_points([p]).grown(distance), |face| found.push(face));
+        found.sort_unstable();
+        found
+    }
+
+    /// Returns the triangle through which the axis leaves the vessel beyond the plane, and the number of faces searched.
+    fn tip(&self, section: &Section) -> (Option<u32>, usize) {
+        let (u, w) = section.frame();
+        let reach = LONGEST_TIP * section.radius;
+        let mut best = (reach, None);
+        let far = reach + self.longest;
+        let near = self.near(&section.origin, far);
+        for &face in &near {
+            let corners = self.surface.triangles[face as usize].map(|v| self.surface.points[v as usize]);
+            if (corners[0] - section.origin).norm_squared() > far.powi(2) {
+                continue;
+            }
+            let local = corners.map(|p| {
+                let d = p - section.origin;
+                Vec3::new(d.dot(&u), d.dot(&w), d.dot(&section.axis))
+            });
+            let side = |a: &Vec3, b: &Vec3| a.x * b.y - a.y * b.x;
+            let [a, b, c] = &local;
+            let (wa, wb, wc) = (side(b, c), side(c, a), side(a, b));
+            let total = wa + wb + wc;
+            // An exit is counter-clockwise seen from above, along the axis.
+            if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 && total > 0.0 {
+                let height = (wa * a.z + wb * b.z + wc * c.z) / total;
+                if height > 0.0 && height < best.0 {
+                    best = (height, Some(face));
+                }
+            }
+        }
+        (best.1, near.len())
+    }
+}
+
 fn longest_edge(surface: &TriMesh) -> f64 {
     let length = |t: &[u32; 3], i: usize| {
         (surface.points[t[(i + 1) % 3] as usize] - surface.points[t[i] as usize]).norm_squared()
@@ -411,6 +489,10 @@ impl Level for Raised<'_> {
         let (value, gradient) = self.field.value_and_gradient(p);
         (value - self.by * self.finer.factor(p, self.edge).powi(2), gradient)
     }
+
+    fn operations(&mut self) -> usize {
+        self.field.operations()
+    }
 }
 
 /// Relaxes the wall next to each disc; keeps discs and more distant parts fixed.
@@ -419,9 +501,8 @@ fn relaxed(
     mut sizes: Vec<f64>,
     cap: &[Option<u32>],
     field: &mut Field,
-    ends: &[Closing],
-    params: &SurfaceParams,
-    finer: &Finer,
+    (ends, params, finer): (&[&Closing], &SurfaceParams, &Finer),
+    watch: &Watch,
 ) -> Result<CappedSurface, CapError> {
     let mut surface = HalfEdges::new(mesh).map_err(|edge| CapError::NotManifold { edge })?;
     let mut on_disc = vec![false; mesh.points.len()];
@@ -466,8 +547,9 @@ fn relaxed(
                 }
             }
         }
-        let mut relaxation = Relaxation::new(&mut surface, &mut level, sizes, hold);
-        relaxation.mend(if leaned_on { 12 } else { 3 });
+        watch.spend(surface.points.len() / 8)?;
+        let mut relaxation = Relaxation::new(&mut surface, &mut level, sizes, hold, *watch);
+        relaxation.mend(if leaned_on { 12 } else { 3 })?;
         sizes = relaxation.sizes;
     }
     let faces = surface.live_triangles();

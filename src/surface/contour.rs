@@ -13,6 +13,7 @@ use super::cases::{CASES, FACE_EDGES, NONE, edge_corners};
 use super::relax::largest_cosine;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_tet::parts::Watch;
 
 /// Grid node, or the cell of which it is the lowest corner.
 pub(crate) type Node = [i32; 3];
@@ -34,20 +35,47 @@ struct Tile {
     visited: [u64; PLACES / 64],
 }
 
+/// Function on the nodes of the grid, negative inside.
+pub(crate) trait Sampled {
+    /// Value at a node.
+    fn value(&mut self, n: Node) -> f64;
+
+    /// Operations of the evaluations since the last call, as counted by budgets.
+    fn operations(&mut self) -> usize {
+        0
+    }
+}
+
+impl<F: FnMut(Node) -> f64> Sampled for F {
+    fn value(&mut self, n: Node) -> f64 {
+        self(n)
+    }
+}
+
+/// Operations per crossed cell, as counted by budgets.
+const OPERATIONS: usize = 10;
+
+/// Crossed cells between two checks for cancellation and the budget.
+const ASKED_EVERY: usize = 1024;
+
 /// Contours the zero level of `value` (negative inside) from crossed `seeds`. Positions are in grid units. Also returns
 /// a vertex in the cell of each seed.
 ///
 /// # Errors
-/// `TooLarge` if more than `max_cells` cells are crossed or the grid's coordinates overflow.
+/// `TooLarge` if more than `max_cells` cells are crossed or the grid's coordinates overflow; `Stopped`.
 pub(crate) fn contour(
     seeds: &[Node],
     max_cells: usize,
-    value: impl FnMut(Node) -> f64,
+    value: impl Sampled,
+    watch: &Watch,
 ) -> Result<(TriMesh, Vec<u32>), SurfaceError> {
     let mut grid = SparseGrid { tiles: Vec::new(), index: FxHashMap::default(), last: (u64::MAX, 0), value };
     let mut dual = DualMesh { mesh: TriMesh::default(), midpoints: FxHashMap::default() };
-    let cells = grid.flood(seeds, max_cells, &mut dual.mesh.points)?;
-    for &(cell, mask) in &cells {
+    let cells = grid.flood(seeds, max_cells, watch, &mut dual.mesh.points)?;
+    for (i, &(cell, mask)) in cells.iter().enumerate() {
+        if i.is_multiple_of(ASKED_EVERY) {
+            watch.spend(ASKED_EVERY * OPERATIONS / 2)?;
+        }
         for d in 0..3 {
             if (mask ^ mask >> (1 << d)) & 1 == 1 {
                 dual.crossing(&mut grid, cell, d, mask & 1 == 1);
@@ -65,7 +93,7 @@ struct SparseGrid<F> {
     value: F,
 }
 
-impl<F: FnMut(Node) -> f64> SparseGrid<F> {
+impl<F: Sampled> SparseGrid<F> {
     /// Tile of a node and index within it.
     #[inline]
     fn locate(&mut self, n: Node) -> (usize, usize) {
@@ -100,7 +128,7 @@ impl<F: FnMut(Node) -> f64> SparseGrid<F> {
         let known = &mut self.tiles[tile].evaluated[place / 64];
         if *known >> (place % 64) & 1 == 0 {
             *known |= 1 << (place % 64);
-            self.tiles[tile].value[place] = (self.value)(n);
+            self.tiles[tile].value[place] = self.value.value(n);
         }
         self.tiles[tile].value[place]
     }
@@ -129,6 +157,7 @@ impl<F: FnMut(Node) -> f64> SparseGrid<F> {
         &mut self,
         seeds: &[Node],
         max_cells: usize,
+        watch: &Watch,
         points: &mut Vec<Point3>,
     ) -> Result<Vec<(Node, u8)>, SurfaceError> {
         let mut cells = Vec::new();
@@ -143,6 +172,9 @@ impl<F: FnMut(Node) -> f64> SparseGrid<F> {
                 }
                 if cells.len() == max_cells {
                     return Err(SurfaceError::TooLarge { cells: max_cells as f64 + 1.0, limit: max_cells });
+                }
+                if cells.len().is_multiple_of(ASKED_EVERY) {
+                    watch.spend(ASKED_EVERY * OPERATIONS + self.value.operations())?;
                 }
                 let (tile, place) = self.locate(cell);
                 self.tiles[tile].mask[place] = mask;
@@ -241,7 +273,7 @@ struct DualMesh {
 
 impl DualMesh {
     /// Adds the polygon of the crossed grid edge from `n` along axis `d`; `inside` tells if `n` is inside.
-    fn crossing<F: FnMut(Node) -> f64>(&mut self, grid: &mut SparseGrid<F>, n: Node, d: usize, inside: bool) {
+    fn crossing<F: Sampled>(&mut self, grid: &mut SparseGrid<F>, n: Node, d: usize, inside: bool) {
         let (u, v) = ((d + 1) % 3, (d + 2) % 3);
         // Counter-clockwise seen from the far end of the edge.
         let cells = [n, shifted(n, u, -1), shifted(shifted(n, u, -1), v, -1), shifted(n, v, -1)];
@@ -283,7 +315,7 @@ impl DualMesh {
     }
 
     /// Returns the middle vertex of the segment that crosses edge (n, d) on the lower face of `cell` across `axis`.
-    fn midpoint<F: FnMut(Node) -> f64>(
+    fn midpoint<F: Sampled>(
         &mut self,
         grid: &mut SparseGrid<F>,
         cell: Node,

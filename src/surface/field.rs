@@ -22,6 +22,8 @@ const CHORD_ERROR: f64 = 0.01;
 const LONGEST_CHORD: f64 = 2.0;
 /// Maximum number of tubes in a run. Bounds the run time.
 const MOST_MERGED: usize = 64;
+/// Pieces of the field that one point visits in the time of an operation of the budget.
+const PIECES_PER_OPERATION: u64 = 8;
 /// Bits per coordinate of a search cell's key.
 const KEY_BITS: u32 = 21;
 
@@ -47,6 +49,8 @@ pub struct Field {
     far: f64,
     erf: &'static Table,
     locator: Option<Locator>,
+    /// Pieces visited since the last call of `operations`.
+    visited: u64,
 }
 
 /// Cached lists of the relevant pieces, one per cell of a coarse grid.
@@ -57,6 +61,8 @@ struct Locator {
     cells: FxHashMap<u64, (u32, u32)>,
     blocks: FxHashMap<u64, (u32, u32)>,
     lists: Vec<u32>,
+    /// Pieces sorted into lists since this was last reset.
+    sorted: u64,
 }
 
 impl Field {
@@ -82,12 +88,17 @@ impl Field {
             return Err(SurfaceError::Empty);
         }
         let locator = (pieces.len() > FEW).then(|| Locator::new(&pieces));
-        Ok(Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator })
+        Ok(Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator, visited: 0 })
     }
 
     /// Kernel width.
     pub fn kappa(&self) -> f64 {
         self.kappa
+    }
+
+    /// Operations since the last call, as counted by budgets.
+    pub(crate) fn operations(&mut self) -> usize {
+        (std::mem::take(&mut self.visited) / PIECES_PER_OPERATION) as usize
     }
 
     /// Lower and upper corner of the box outside which every value is the far value.
@@ -107,7 +118,7 @@ impl Field {
     pub fn value(&mut self, p: &Point3) -> f64 {
         let mut sum = 0.0;
         let add = |piece: &TaperedSegment| sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
-        each_near(&mut self.locator, &self.pieces, p, add);
+        self.visited += each_near(&mut self.locator, &self.pieces, p, add);
         self.distance(sum)
     }
 
@@ -120,7 +131,7 @@ impl Field {
                 gradient += g;
             }
         };
-        each_near(&mut self.locator, &self.pieces, p, add);
+        self.visited += each_near(&mut self.locator, &self.pieces, p, add);
         let g = self.distance(sum);
         if g >= self.far || g <= 1e-6 {
             return (g, Vec3::zeros());
@@ -136,7 +147,7 @@ impl Field {
             sum += weight;
             radii += weight * radius;
         };
-        each_near(&mut self.locator, &self.pieces, p, add);
+        self.visited += each_near(&mut self.locator, &self.pieces, p, add);
         if sum > 0.0 { radii / sum } else { 0.0 }
     }
 
@@ -158,19 +169,23 @@ impl Field {
     }
 }
 
-/// Visits the pieces that count near a point, in order.
+/// Visits the pieces that count near a point, in order. Returns the number of pieces visited or sorted into lists.
 #[inline]
 fn each_near(
     locator: &mut Option<Locator>,
     pieces: &[TaperedSegment],
     p: &Point3,
     mut visit: impl FnMut(&TaperedSegment),
-) {
-    let Some(locator) = locator else { return pieces.iter().for_each(visit) };
+) -> u64 {
+    let Some(locator) = locator else {
+        pieces.iter().for_each(visit);
+        return pieces.len() as u64;
+    };
     let (start, end) = locator.range(pieces, p);
     for &i in &locator.lists[start as usize..end as usize] {
         visit(&pieces[i as usize]);
     }
+    u64::from(end - start) + std::mem::take(&mut locator.sorted)
 }
 
 /// Replaces runs of short tubes along a polyline by their chord if it stays close. Otherwise each piece of a finely
@@ -293,7 +308,14 @@ impl Locator {
             }
         }
         let size = reaches[reaches.len() / 8];
-        Self { origin: lo, size, cells: FxHashMap::default(), blocks: FxHashMap::default(), lists: Vec::new() }
+        Self {
+            origin: lo,
+            size,
+            cells: FxHashMap::default(),
+            blocks: FxHashMap::default(),
+            lists: Vec::new(),
+            sorted: 0,
+        }
     }
 
     /// Returns the pieces that reach the cell of `p`, as a range of `lists`.
@@ -324,6 +346,7 @@ impl Locator {
         let half = 0.5 * size * 3f64.sqrt() * (1.0 + 1e-9);
         let start = self.lists.len() as u32;
         let (first, last) = from.unwrap_or((0, pieces.len() as u32));
+        self.sorted += u64::from(last - first);
         for k in first..last {
             let i = if from.is_some() { self.lists[k as usize] } else { k };
             let piece = &pieces[i as usize];

@@ -26,6 +26,7 @@ use anastomesh_mesh::Kept;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::DisjointSets;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
+use anastomesh_tet::parts::Watch;
 use halfedge::HalfEdges;
 use relax::Relaxation;
 
@@ -34,7 +35,7 @@ use relax::Relaxation;
 /// # Errors
 /// The tubes or the parameters are invalid, or the wall is too large, not resolved by the grid, or disconnected.
 pub fn vessel_surface(tubes: &[Tube], params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
-    vessel_wall(tubes, params, &Finer::default()).map(|wall| wall.mesh)
+    vessel_wall(tubes, params, &Finer::default(), &Watch::NOBODY).map(|wall| wall.mesh)
 }
 
 /// A wall and its target edge lengths.
@@ -53,19 +54,25 @@ pub struct SizedWall {
 /// Returns the wall like [`vessel_surface`], with its target edge lengths, which `finer` shortens locally.
 ///
 /// # Errors
-/// See [`vessel_surface`].
-pub fn vessel_wall(tubes: &[Tube], params: &SurfaceParams, finer: &Finer) -> Result<SizedWall, SurfaceError> {
+/// See [`vessel_surface`]; `Stopped` if the watch says so.
+pub fn vessel_wall(
+    tubes: &[Tube],
+    params: &SurfaceParams,
+    finer: &Finer,
+    watch: &Watch,
+) -> Result<SizedWall, SurfaceError> {
     check(params)?;
     let mut field = Field::new(tubes, params.kappa)?;
     let estimate = estimated_cells(tubes, params.voxel);
     if estimate > params.max_cells as f64 {
         return Err(SurfaceError::TooLarge { cells: estimate, limit: params.max_cells });
     }
-    let mesh = contour_field(tubes, &mut field, params)?;
+    let mesh = contour_field(tubes, &mut field, params, watch)?;
     let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
     let sizes = sizes::wall_sizes(&surface, &mut field, params, finer);
-    let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new());
-    relaxation.run((params.rounds + finer.rounds()) as usize);
+    watch.spend(surface.points.len() + field.operations())?;
+    let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new(), *watch);
+    relaxation.run((params.rounds + finer.rounds()) as usize)?;
     let sizes = relaxation.sizes;
     let (surface, map) = surface.compacted();
     let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
@@ -95,25 +102,32 @@ fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
 }
 
 /// Estimates the number of cells that the wall crosses: 1.5 per cell face of its area.
-fn estimated_cells(tubes: &[Tube], voxel: f64) -> f64 {
+pub(crate) fn estimated_cells(tubes: &[Tube], voxel: f64) -> f64 {
     let area: f64 = tubes.iter().map(|t| std::f64::consts::PI * (t.ra + t.rb) * t.length()).sum();
     1.5 * area / (voxel * voxel)
 }
 
 /// Contours the field on the grid and returns the outer surface around the tubes. There must be exactly one.
-fn contour_field(tubes: &[Tube], field: &mut Field, params: &SurfaceParams) -> Result<TriMesh, SurfaceError> {
+fn contour_field(
+    tubes: &[Tube],
+    field: &mut Field,
+    params: &SurfaceParams,
+    watch: &Watch,
+) -> Result<TriMesh, SurfaceError> {
     let grid = Grid::new(field, params)?;
     let mut seeds = Vec::with_capacity(2 * tubes.len());
     let mut owners = Vec::with_capacity(2 * tubes.len());
     for (i, tube) in tubes.iter().enumerate() {
         if tube.length() > 0.0 {
             let found = grid.seeds(field, tube);
+            watch.spend(field.operations())?;
             let found = found.ok_or(SurfaceError::Unresolved { tube: i as u32, voxel: params.voxel })?;
             seeds.extend(found);
             owners.extend([i as u32; 2]);
         }
     }
-    let (mut mesh, at_seeds) = contour::contour(&seeds, params.max_cells, |n| field.value(&grid.point(n)) - 1.0)?;
+    let sampled = SampledField { field, grid: &grid };
+    let (mut mesh, at_seeds) = contour::contour(&seeds, params.max_cells, sampled, watch)?;
     for p in &mut mesh.points {
         *p = grid.origin + p.coords * grid.voxel;
     }
@@ -156,6 +170,23 @@ fn restricted(mesh: &TriMesh, component: &[u32], keep: u32) -> TriMesh {
     let kept = Kept::of(component.iter().map(|&c| c == keep));
     let triangles = mesh.triangles.iter().filter(|t| component[t[0] as usize] == keep);
     TriMesh { points: kept.select(&mesh.points), triangles: triangles.map(|t| kept.cell(t)).collect() }
+}
+
+/// Field on the nodes of a grid, shifted so that the wall is its zero level.
+struct SampledField<'a> {
+    field: &'a mut Field,
+    grid: &'a Grid,
+}
+
+impl contour::Sampled for SampledField<'_> {
+    #[inline]
+    fn value(&mut self, n: contour::Node) -> f64 {
+        self.field.value(&self.grid.point(n)) - 1.0
+    }
+
+    fn operations(&mut self) -> usize {
+        self.field.operations()
+    }
 }
 
 /// Sampling grid of the field.

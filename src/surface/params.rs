@@ -1,5 +1,6 @@
 //! Parameters and errors of the surface stage.
 
+use anastomesh_mesh::budget::Stop;
 use anastomesh_skeleton::resolution::KAPPA;
 
 /// Parameters of a surface.
@@ -95,6 +96,9 @@ pub enum SurfaceError {
         /// One tube of each of two components.
         tubes: [u32; 2],
     },
+    /// The caller asked for a stop, or the budget is exceeded.
+    #[error(transparent)]
+    Stopped(#[from] Stop),
     /// The contour is not a closed manifold, which is a bug.
     #[error("the contour is not a closed manifold at edge {} – {}", edge[0], edge[1])]
     NotManifold {

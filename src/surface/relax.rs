@@ -4,7 +4,9 @@
 
 use super::field::Field;
 use super::halfedge::HalfEdges;
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_tet::parts::Watch;
 
 mod crotch;
 
@@ -13,11 +15,20 @@ pub(crate) trait Level {
     /// Returns value and gradient of a function that grows outwards and is 1 on the level set. The gradient is zero
     /// where the level does not constrain vertices.
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3);
+
+    /// Operations of the evaluations since the last call, as counted by budgets.
+    fn operations(&mut self) -> usize {
+        0
+    }
 }
 
 impl Level for Field {
     fn value_and_gradient(&mut self, p: &Point3) -> (f64, Vec3) {
         Field::value_and_gradient(self, p)
+    }
+
+    fn operations(&mut self) -> usize {
+        Field::operations(self)
     }
 }
 
@@ -45,6 +56,9 @@ pub(crate) struct Relaxation<'a, L> {
     normals: Vec<Vec3>,
     /// Part to relax; `None` for the whole surface.
     patch: Option<Patch>,
+    watch: Watch<'a>,
+    /// Reason to end early; no pass does anything then.
+    stopped: Option<Stop>,
 }
 
 /// Part of a surface with free vertices.
@@ -64,14 +78,23 @@ const SPLIT_ABOVE: f64 = 1.45;
 const COLLAPSE_BELOW: f64 = 0.62;
 /// Triangles with a minimum angle above 41° are not flipped for a better one.
 const GOOD_COSINE: f64 = 0.75;
+/// Items between two checks for cancellation and the budget, and operations per item.
+const ASKED_EVERY: usize = 4096;
+const OPERATIONS: usize = 1;
 /// Maximum vertex step in one projection, in edge lengths.
 const MAX_STEP: f64 = 0.5;
 
 impl<'a, L: Level> Relaxation<'a, L> {
-    pub(crate) fn new(surface: &'a mut HalfEdges, level: &'a mut L, sizes: Vec<f64>, hold: Vec<Hold>) -> Self {
+    pub(crate) fn new(
+        surface: &'a mut HalfEdges,
+        level: &'a mut L,
+        sizes: Vec<f64>,
+        hold: Vec<Hold>,
+        watch: Watch<'a>,
+    ) -> Self {
         let normals = vec![Vec3::zeros(); surface.points.len()];
         let patch = (!hold.is_empty()).then(|| Patch::of(surface, &hold));
-        let mut this = Self { surface, level, sizes, hold, normals, patch };
+        let mut this = Self { surface, level, sizes, hold, normals, patch, watch, stopped: None };
         // Contours and relaxed walls lie near the level, so surface normals suffice until the first projection.
         for i in 0..this.vertex_count() {
             let v = this.vertex(i);
@@ -79,6 +102,16 @@ impl<'a, L: Level> Relaxation<'a, L> {
             this.normals[v as usize] = sum.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
         }
         this
+    }
+
+    /// Counts the next operations of a pass at item `i` of `count`. Returns true if the pass must end.
+    #[inline]
+    fn must_stop(&mut self, i: usize, count: usize) -> bool {
+        if i.is_multiple_of(ASKED_EVERY) {
+            let operations = OPERATIONS * ASKED_EVERY.min(count - i) + self.level.operations();
+            self.stopped = self.stopped.or(self.watch.spend(operations).err());
+        }
+        self.stopped.is_some()
     }
 
     /// Number of half-edges to visit, including removed ones.
@@ -104,7 +137,10 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     /// Relaxes a surface that is good except for an inner seam: flips use the angle criterion only.
-    pub(crate) fn mend(&mut self, rounds: usize) {
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch says so.
+    pub(crate) fn mend(&mut self, rounds: usize) -> Result<(), Stop> {
         for _ in 0..rounds {
             self.split_long();
             self.collapse_short();
@@ -113,11 +149,15 @@ impl<'a, L: Level> Relaxation<'a, L> {
         }
         self.flip(Criterion::Angle);
         self.project();
+        self.stopped.map_or(Ok(()), Err)
     }
 
     /// Runs rounds of split, collapse, flip and smooth, then opens crotches and runs the final passes. For whole
     /// surfaces.
-    pub(crate) fn run(&mut self, rounds: usize) {
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch says so.
+    pub(crate) fn run(&mut self, rounds: usize) -> Result<(), Stop> {
         for _ in 0..rounds {
             self.split_long();
             self.collapse_short();
@@ -125,6 +165,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
             self.smooth();
         }
         self.open_crotches(Self::finish);
+        self.stopped.map_or(Ok(()), Err)
     }
 
     /// Improves the worst angles and applies the final projection and chord compensation.
@@ -186,6 +227,9 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// Moves each free vertex by one Newton step onto the level and updates its normal.
     fn project(&mut self) {
         for i in 0..self.vertex_count() {
+            if self.must_stop(i, self.vertex_count()) {
+                return;
+            }
             let v = self.vertex(i);
             if self.is_free(v) {
                 let p = self.surface.points[v as usize];
@@ -211,7 +255,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// projects it.
     fn smooth(&mut self) {
         let targets: Vec<Point3> = (0..self.vertex_count()).map(|i| self.smoothed(self.vertex(i))).collect();
+        let count = targets.len();
         for (i, target) in targets.into_iter().enumerate() {
+            if self.must_stop(i, count) {
+                return;
+            }
             let v = self.vertex(i);
             if self.is_free(v) {
                 self.surface.points[v as usize] = self.projected(v, target);
@@ -243,7 +291,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     fn split_long(&mut self) {
-        for i in 0..self.half_count() {
+        let count = self.half_count();
+        for i in 0..count {
+            if self.must_stop(i as usize, count as usize) {
+                return;
+            }
             let h = self.half(i);
             if !self.is_editable(h) {
                 continue;
@@ -282,7 +334,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
     }
 
     fn collapse_short(&mut self) {
-        for i in 0..self.half_count() {
+        let count = self.half_count();
+        for i in 0..count {
+            if self.must_stop(i as usize, count as usize) {
+                return;
+            }
             let h = self.half(i);
             if !self.surface.is_live(h) || self.is_locked(self.surface.from(h)) {
                 continue;
@@ -333,7 +389,11 @@ impl<'a, L: Level> Relaxation<'a, L> {
     fn flip(&mut self, criterion: Criterion) {
         let by_valence = matches!(criterion, Criterion::Valence);
         let mut valence = if by_valence { self.surface.valences() } else { Vec::new() };
-        for i in 0..self.half_count() {
+        let count = self.half_count();
+        for i in 0..count {
+            if self.must_stop(i as usize, count as usize) {
+                return;
+            }
             let h = self.half(i);
             if self.is_editable(h) && h < self.surface.twin(h) {
                 let s = &*self.surface;

@@ -2,6 +2,7 @@
 
 use super::halfedge::HalfEdges;
 use super::*;
+use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_skeleton::FineFork;
 use proptest::prelude::*;
@@ -31,7 +32,7 @@ fn contour_signs(n: usize, inside: &[bool]) -> Option<TriMesh> {
             }
         }
     }
-    (!seeds.is_empty()).then(|| contour::contour(&seeds, usize::MAX, value).unwrap().0)
+    (!seeds.is_empty()).then(|| contour::contour(&seeds, usize::MAX, value, &Watch::NOBODY).unwrap().0)
 }
 
 fn volume(mesh: &TriMesh) -> f64 {
@@ -244,7 +245,7 @@ fn edges_follow_the_radius() {
         tube([0.0, 0.0, 0.0], [0.5, 6.0, 0.0], 0.5, 0.5),
     ];
     let params = SurfaceParams { thin: 0.5, follow: 1.0, ..SurfaceParams::with_voxel(1.0 / 3.0) };
-    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default(), &Watch::NOBODY).unwrap();
     check_wall(&wall.mesh);
     assert_eq!(wall.sizes.len(), wall.mesh.points.len());
     let all = edges(&wall.mesh);
@@ -254,7 +255,8 @@ fn edges_follow_the_radius() {
     };
     let (thick, thin) = (mean(&|p| p.x.abs() > 4.0), mean(&|p| p.y > 3.0));
     assert!((2.6..3.6).contains(&(thick / thin)), "{thick} {thin}");
-    let as_fine = vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }, &Finer::default()).unwrap();
+    let as_fine =
+        vessel_wall(&tubes, &SurfaceParams { follow: 0.0, ..params }, &Finer::default(), &Watch::NOBODY).unwrap();
     assert!(2 * wall.mesh.triangles.len() < as_fine.mesh.triangles.len());
     // Triangle size changes by less than a factor 1.5 between neighbours.
     let mut sides: Vec<([u32; 2], usize)> = Vec::new();
@@ -281,7 +283,7 @@ fn edges_at_forks_are_as_short_as_asked_and_on_the_same_wall() {
     let walls = [1.0, 0.5, 0.25].map(|factor| {
         let fork = FineFork { at: Point3::origin(), within: 1.3, factor };
         let finer = Finer { forks: vec![fork], ends: ends.clone() };
-        let wall = vessel_wall(&tubes, &params, &finer).unwrap();
+        let wall = vessel_wall(&tubes, &params, &finer, &Watch::NOBODY).unwrap();
         check_wall(&wall.mesh);
         let all = edges(&wall.mesh);
         let mean = |from: f64, to: f64| {
@@ -317,4 +319,42 @@ proptest! {
         let smallest = r[0].min(r[1]).min(r[2]);
         check_wall(&vessel_surface(&tubes, &SurfaceParams::with_voxel(2.0 * smallest / rho)).unwrap());
     }
+}
+
+#[test]
+fn a_wall_beyond_its_budget_is_given_up() {
+    let t = [tube([0.0; 3], [20.0, 0.0, 0.0], 1.0, 1.0), tube([20.0, 0.0, 0.0], [30.0, 8.0, 0.0], 1.0, 0.7)];
+    let params = SurfaceParams::with_voxel(0.2);
+    let of = |limit: u64| {
+        let budget = Budget::new(limit);
+        let wall = vessel_wall(&t, &params, &Finer::default(), &Watch::NOBODY.within(&budget));
+        (wall.map(|wall| wall.mesh), budget.spent())
+    };
+    let (whole, all) = of(u64::MAX);
+    assert_eq!(whole, vessel_surface(&t, &params));
+    // Every stage notices that the budget is exceeded, and soon.
+    for part in 0..20 {
+        let limit = all * part / 20;
+        let (wall, spent) = of(limit);
+        assert!(matches!(wall, Err(SurfaceError::Stopped(_))), "{limit} of {all}");
+        assert!(spent <= limit + all / 5, "{spent} for {limit} of {all}");
+    }
+}
+
+#[test]
+fn pieces_that_crowd_are_counted() {
+    let pieces = |count: u32| -> Vec<Tube> {
+        let x = |i: u32| 10.0 * f64::from(i) / f64::from(count);
+        // A staircase, so that pieces are not merged.
+        let at = |i: u32| [x(i), 0.05 * f64::from(i % 2), 0.0];
+        (0..count).map(|i| tube(at(i), at(i + 1), 1.0, 1.0)).collect()
+    };
+    let spent = |count: u32| {
+        let budget = Budget::new(u64::MAX);
+        let watch = Watch::NOBODY.within(&budget);
+        vessel_wall(&pieces(count), &SurfaceParams::with_voxel(0.4), &Finer::default(), &watch).unwrap();
+        budget.spent()
+    };
+    let (few, many) = (spent(20), spent(2000));
+    assert!(many > 5 * few, "{few} {many}");
 }

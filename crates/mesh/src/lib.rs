@@ -33,6 +33,7 @@ pub mod beside;
 pub mod bits;
 pub mod boundary;
 mod bounds;
+pub mod budget;
 pub mod check;
 pub mod dihedral;
 pub mod faces;

@@ -5,7 +5,7 @@ use super::error::TetError;
 use super::input;
 use super::lattice;
 use super::options::{Interior, Refinement};
-use super::progress::Stage;
+use super::progress::{Stage, Watch};
 use super::recover::exact::{Missing, RecoveryStrategy, recover_exact};
 use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
@@ -25,6 +25,9 @@ const VOLUME_SHARE: f64 = 0.6;
 
 /// Replaces an error by the defect of the surface that may have caused it.
 pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
+    if error.is_stop() {
+        return error;
+    }
     let checked = input::no_duplicate_points(&r.surface.points)
         .and_then(|()| input::no_duplicate_triangles(&r.surface.triangles))
         .and_then(|()| contacts::no_contacts(r.surface, r.watch))
@@ -43,7 +46,7 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetE
     let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
         Ok(summary) => return Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
-        Err(TetError::Cancelled) => return Err(TetError::Cancelled),
+        Err(error) if error.is_stop() => return Err(error),
         Err(error) => return Err(diagnosis(r, error)),
     };
     // Exact recovery requires a surface without self-intersections.
@@ -131,7 +134,7 @@ fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
     let mut points = surface.points.clone();
     match sized::sized_points(r) {
         Some(inside) => points.extend(inside),
-        None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement))?),
+        None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement), r.watch)?),
     }
     // A smaller box has a smaller roundoff bound. Smooth walls still leave space for flips.
     let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
@@ -153,7 +156,7 @@ fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refine
     }
 }
 
-fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>, TetError> {
+fn interior_points(surface: &TriMesh, interior: &Interior, watch: &Watch) -> Result<Vec<Point3>, TetError> {
     match interior {
         Interior::None => Ok(Vec::new()),
         Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } => {
@@ -161,9 +164,9 @@ fn interior_points(surface: &TriMesh, interior: &Interior) -> Result<Vec<Point3>
             let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
             let graded = matches!(interior, Interior::Graded { .. });
             let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };
-            Ok(points(surface, cell, clearance))
+            Ok(points(surface, cell, clearance, watch)?)
         }
-        Interior::Local { cell, clearance } => Ok(lattice::local_lattice_points(surface, *cell, *clearance)),
+        Interior::Local { cell, clearance } => Ok(lattice::local_lattice_points(surface, *cell, *clearance, watch)?),
         Interior::Points(points) => {
             let inside = points.iter().zip(0..).find(|(p, _)| !p.iter().all(|x| x.is_finite()));
             match inside {

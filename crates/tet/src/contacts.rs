@@ -17,6 +17,9 @@ const MOST: usize = 2_000_000_000;
 /// Triangles between two progress reports.
 const STEP: usize = 4096;
 
+/// Pairs tested between two checks for cancellation and the budget.
+const ASKED_EVERY: usize = 100_000;
+
 /// Checks that two triangles share only their common vertices by index. Triangles without area are left out.
 ///
 /// # Errors
@@ -43,7 +46,7 @@ fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2]
     let (points, triangles) = (&surface.points, &surface.triangles);
     let boxes = boxes_of(surface);
     let tree = Bvh::new(&boxes);
-    let (mut near, mut tests, mut any) = (Vec::new(), 0_usize, false);
+    let (mut near, mut tests, mut any, mut counted) = (Vec::new(), 0_usize, false, 0);
     for (i, aabb) in boxes.iter().enumerate() {
         if i.is_multiple_of(STEP) {
             watch.report(Stage::Validate, i, boxes.len())?;
@@ -56,6 +59,10 @@ fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2]
         });
         near.sort_unstable();
         tests += near.len() + 1;
+        if tests - counted > ASKED_EVERY {
+            watch.spend(tests - counted)?;
+            counted = tests;
+        }
         for &j in &near {
             if let Contact::Improper(_) = classify(points, triangles[i], triangles[j as usize]) {
                 any = true;

@@ -4,6 +4,7 @@ use super::complex::{ComplexError, face_key};
 use super::layer::LayersError;
 use super::plc::InputPart;
 use anastomesh_mesh::Bound;
+use anastomesh_mesh::budget::{OverBudget, Stop};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::units::counted;
 
@@ -410,10 +411,32 @@ pub enum TetError {
     /// The progress callback cancelled the run.
     #[error("cancelled")]
     Cancelled,
+    /// The work exceeds its budget. Only callers that set one see this.
+    #[error("it exceeds its budget of {:.3} million operations", *limit as f64 / 1e6)]
+    OverBudget {
+        /// Maximum number of operations.
+        limit: u64,
+    },
     /// The finished mesh did not pass the certificate. A bug of this program, or a surface that intersects itself.
     #[error("the mesh failed its certificate")]
     NotCertified(#[from] super::certify::CertifyError),
     /// The complex broke. A bug of this program.
     #[error("the tetrahedral complex is inconsistent")]
     Broken(#[from] ComplexError),
+}
+
+impl TetError {
+    /// True if the run was cancelled or exceeded its budget, so that no other attempt helps.
+    pub(super) fn is_stop(&self) -> bool {
+        matches!(self, Self::Cancelled | Self::OverBudget { .. })
+    }
+}
+
+impl From<Stop> for TetError {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Cancelled => Self::Cancelled,
+            Stop::OverBudget(OverBudget { limit }) => Self::OverBudget { limit },
+        }
+    }
 }

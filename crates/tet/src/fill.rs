@@ -13,6 +13,9 @@ use super::regions::Regions;
 use super::request::{Filled, Request};
 use super::sized;
 
+/// Operations of the improvement per tetrahedron, as counted by budgets.
+const OPTIMIZATION: usize = 15;
+
 /// Fills the requested volume and certifies the mesh.
 pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     sized::check(r.refinement, r.sizing, r.surface.points.len())?;
@@ -61,6 +64,8 @@ fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> 
 /// Improves the mesh; triangles and held segments stay.
 fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError> {
     r.watch.report(Stage::Optimize, 0, 1)?;
+    // The improvement limits itself by attempts per tetrahedron.
+    r.watch.spend(OPTIMIZATION * carved.slots())?;
     let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };
     let report = optimize_complex(carved, &options, r.watch);
     r.watch.report(Stage::Optimize, 1, 1)?;

@@ -6,7 +6,9 @@ mod local;
 pub use local::local_lattice_points;
 
 use super::delaunay::hash;
+use super::progress::{Counter, Watch};
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Vec3, point_triangle};
 use rustc_hash::FxHashMap;
 
@@ -70,22 +72,36 @@ fn pack([i, j, k]: [i64; 3]) -> u64 {
 /// Points of a body-centred cubic lattice with cubes of side `cell`, inside the closed `surface` and at least
 /// `clearance` from it. The result is deterministic. One scan line per column decides which points are inside; a line
 /// that grazes an edge may give wrong points, which carving drops.
-pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
-    sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice))
+///
+/// # Errors
+/// [`Stop`] if the watch says so.
+pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
+    let sites = sites(surface, cell, |_| Some(clearance), watch)?;
+    Ok(sites.map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice)))
 }
 
 /// As [`lattice_points`], with cubes that grow by 2, 4, ... away from the surface.
-pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
-    sites(surface, cell, |_| Some(clearance)).map_or_else(Vec::new, |(lattice, mut columns)| {
-        columns.thin();
-        columns.places(&lattice)
-    })
+///
+/// # Errors
+/// See [`lattice_points`].
+pub fn graded_lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
+    let Some((lattice, mut columns)) = sites(surface, cell, |_| Some(clearance), watch)? else { return Ok(Vec::new()) };
+    columns.thin(watch)?;
+    Ok(columns.places(&lattice))
 }
 
 /// Lattice and its points inside, off the wall by the clearance of each triangle; `None` if the cell is unusable.
 /// Triangles without a clearance are skipped.
-fn sites(surface: &TriMesh, cell: f64, clearance: impl Fn(&[u32; 3]) -> Option<f64>) -> Option<(Lattice, Columns)> {
-    let first = surface.points.first()?;
+///
+/// # Errors
+/// See [`lattice_points`].
+fn sites(
+    surface: &TriMesh,
+    cell: f64,
+    clearance: impl Fn(&[u32; 3]) -> Option<f64>,
+    watch: &Watch,
+) -> Result<Option<(Lattice, Columns)>, Stop> {
+    let Some(first) = surface.points.first() else { return Ok(None) };
     let (mut low, mut high) = (*first, *first);
     for p in &surface.points {
         low = low.inf(p);
@@ -94,18 +110,20 @@ fn sites(surface: &TriMesh, cell: f64, clearance: impl Fn(&[u32; 3]) -> Option<f
     let half = cell / 2.0;
     let usable = cell > 0.0 && half.is_finite() && (high - low).max() / half < MAX_INDEX;
     if !usable {
-        return None;
+        return Ok(None);
     }
     let lattice = Lattice { origin: low, half };
-    let mut columns = Columns::between(&column_crossings(surface, &lattice));
-    clear_wall(surface, &lattice, clearance, &mut columns);
-    Some((lattice, columns))
+    let mut columns = Columns::between(&column_crossings(surface, &lattice, watch)?, watch)?;
+    clear_wall(surface, &lattice, clearance, &mut columns, watch)?;
+    Ok(Some((lattice, columns)))
 }
 
 /// Crossings of the lattice columns (along z) with the surface: packed column and height, sorted.
-fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
+fn column_crossings(surface: &TriMesh, lattice: &Lattice, watch: &Watch) -> Result<Vec<(u64, f64)>, Stop> {
     let mut crossings = Vec::new();
+    let mut counter = Counter::new(watch);
     for t in &surface.triangles {
+        counter.add(1)?;
         let [a, b, c] = t.map(|v| (surface.points[v as usize] - lattice.origin) / lattice.half);
         let range = |k: usize| {
             let (lo, hi) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
@@ -116,6 +134,7 @@ fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
             continue;
         }
         for i in range(0) {
+            counter.add(width(&range(1)))?;
             for j in range(1).filter(|j| (i & 1) == (j & 1)) {
                 // A fixed odd offset keeps the lines off the surface's own grid.
                 let (x, y) = (i as f64 + 1.37e-4, j as f64 + 2.11e-4);
@@ -131,8 +150,14 @@ fn column_crossings(surface: &TriMesh, lattice: &Lattice) -> Vec<(u64, f64)> {
             break;
         }
     }
+    counter.end()?;
     crossings.sort_unstable_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
-    crossings
+    Ok(crossings)
+}
+
+/// Number of integers in a range.
+fn width(range: &std::ops::RangeInclusive<i64>) -> usize {
+    usize::try_from(range.end() - range.start() + 1).unwrap_or(0)
 }
 
 /// Removes the points closer to a triangle than its clearance.
@@ -141,8 +166,11 @@ fn clear_wall(
     lattice: &Lattice,
     clearance: impl Fn(&[u32; 3]) -> Option<f64>,
     columns: &mut Columns,
-) {
+    watch: &Watch,
+) -> Result<(), Stop> {
+    let mut counter = Counter::new(watch);
     for t in &surface.triangles {
+        counter.add(1)?;
         let Some(clearance) = clearance(t) else { continue };
         let reach = clearance / lattice.half + 2.0 * JITTER * 2.0;
         let corners = t.map(|v| surface.points[v as usize]);
@@ -155,6 +183,7 @@ fn clear_wall(
             for j in range(1).filter(|j| (i & 1) == (j & 1)) {
                 let Some(column) = columns.at(i, j) else { continue };
                 let parity = i & 1;
+                counter.add(width(&range(2)))?;
                 for k in range(2).filter(|k| (k & 1) == parity) {
                     if let Some((word, bit)) = column.bit(k >> 1)
                         && columns.bits[word] & bit != 0
@@ -166,6 +195,7 @@ fn clear_wall(
             }
         }
     }
+    counter.end()
 }
 
 /// Lattice points by columns along z, one bit each: point (i, j, k) is bit `k >> 1` of column (i, j). Its indices k
@@ -198,7 +228,8 @@ impl Column {
 
 impl Columns {
     /// Points between the first and second, third and fourth, ... crossing of each column.
-    fn between(crossings: &[(u64, f64)]) -> Self {
+    fn between(crossings: &[(u64, f64)], watch: &Watch) -> Result<Self, Stop> {
+        let mut counter = Counter::new(watch);
         let mut this = Self { list: Vec::new(), index: FxHashMap::default(), bits: Vec::new() };
         let mut count = 0;
         for crossed in crossings.chunk_by(|p, q| p.0 == q.0) {
@@ -216,6 +247,7 @@ impl Columns {
             if count > MAX_POINTS || this.bits.len() > MAX_POINTS / 4 {
                 break;
             }
+            counter.add(1 + runs().map(|(from, to)| (to - from + 1) as usize).sum::<usize>() / 16)?;
             let (first, start) = (from >> 6, this.bits.len());
             let column = Column { i, j, first, start, words: ((to >> 6) - first + 1) as usize };
             this.bits.resize(start + column.words, 0);
@@ -225,7 +257,8 @@ impl Columns {
             this.index.insert(pack([i, j, 0]), this.list.len() as u32);
             this.list.push(column);
         }
-        this
+        counter.end()?;
+        Ok(this)
     }
 
     fn at(&self, i: i64, j: i64) -> Option<Column> {
@@ -255,15 +288,16 @@ impl Columns {
     }
 
     /// Thins points far from the rim to those of lattices with larger cubes.
-    fn thin(&mut self) {
+    fn thin(&mut self, watch: &Watch) -> Result<(), Stop> {
         let (mut deep, mut depth) = (self.bits.clone(), 0);
         for (level, at) in (1..).zip(COARSER_AT) {
             while depth < at {
+                watch.spend(self.list.len() + self.bits.len())?;
                 deep = self.eroded(&deep);
                 depth += 1;
             }
             if deep.iter().all(|&word| word == 0) {
-                return;
+                return Ok(());
             }
             for column in &self.list {
                 let coarse = column.points_of_level(level);
@@ -272,6 +306,7 @@ impl Columns {
                 }
             }
         }
+        Ok(())
     }
 
     fn places(&self, lattice: &Lattice) -> Vec<Point3> {

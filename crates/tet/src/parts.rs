@@ -7,4 +7,4 @@ pub use crate::delaunay::delaunay;
 pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward};
 pub use crate::names::Names;
 pub use crate::optimize::{OptimizeOptions, optimize};
-pub use crate::progress::Watch;
+pub use crate::progress::{Counter, Watch};

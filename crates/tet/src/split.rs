@@ -173,7 +173,7 @@ impl Tetrahedralizer {
             Ok(Tetrahedralization { summary, .. }) if !summary.left_out.is_empty() => {
                 self.run_without(plc, summary.left_out)
             }
-            Err(TetError::Cancelled) => Err(TetError::Cancelled),
+            Err(error) if error.is_stop() => Err(error),
             _ => Err(error),
         }
     }

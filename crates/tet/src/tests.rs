@@ -271,7 +271,7 @@ fn a_carved_complex_is_sane_with_its_ghosts() {
 fn lattice_points_keep_inside_and_off_the_wall() {
     let s = sphere_surface(3);
     let (cell, clearance) = (0.25, 0.1);
-    let points = lattice::lattice_points(&s, cell, clearance);
+    let points = lattice::lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap();
     let volume = certify::enclosed_volume(&s).0;
     let expected = 2.0 * volume * (1.0 - clearance).powi(3) / cell.powi(3);
     assert!((points.len() as f64 / expected - 1.0).abs() < 0.1, "{} for {expected}", points.len());
@@ -281,9 +281,9 @@ fn lattice_points_keep_inside_and_off_the_wall() {
         let near = s.triangles.iter().map(|t| anastomesh_mesh::geometry::point_triangle(p, corners(t).each_ref()).1);
         assert!(near.fold(f64::INFINITY, f64::min) >= clearance);
     }
-    assert_eq!(points, lattice::lattice_points(&s, cell, clearance));
+    assert_eq!(points, lattice::lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap());
     for cell in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-30] {
-        assert!(lattice::lattice_points(&s, cell, clearance).is_empty());
+        assert!(lattice::lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap().is_empty());
     }
 }
 
@@ -336,8 +336,8 @@ fn the_certificate_finds_every_kind_of_fault() {
 fn a_graded_lattice_is_the_lattice_near_the_wall_and_thinner_inside() {
     let s = sphere_surface(4);
     let (cell, clearance) = (0.06, 0.03);
-    let all = lattice::lattice_points(&s, cell, clearance);
-    let graded = lattice::graded_lattice_points(&s, cell, clearance);
+    let all = lattice::lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap();
+    let graded = lattice::graded_lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap();
     let beyond = |points: &[Point3], r: f64| points.iter().filter(|p| p.coords.norm() > r).count();
     assert_eq!(beyond(&all, 0.9), beyond(&graded, 0.9));
     assert!(graded.len() * 2 < all.len(), "{} of {}", graded.len(), all.len());

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::error::StoreError;
 use super::shelf::Shelf;
 use super::{Backend, RecordId, Store, once};
+use crate::pipeline::effort::Ledger;
 
 /// Files, and the place of each record: its file, where it begins and where it ends.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -73,7 +74,7 @@ impl Store {
 
     /// Records in the files of a folder, to be read only; none where there can be no such files.
     pub(crate) fn of_extents(folder: &Path, extents: &Extents) -> Option<Self> {
-        Some(Self { place: Backend::Shelf(extents.shelf(folder)?), known: Mutex::default() })
+        Some(Self { place: Backend::Shelf(extents.shelf(folder)?), known: Mutex::default(), ledger: Ledger::default() })
     }
 
     /// Leaves something in a work directory, in the place of what was left there before.

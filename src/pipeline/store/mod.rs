@@ -40,6 +40,7 @@ pub use manifest::{Manifest, fingerprint};
 pub use shard::{NoShard, Shard};
 use shelf::Shelf;
 
+use super::effort::Ledger;
 use crate::block::Bytes;
 use anastomesh_mesh::progress::Progress;
 
@@ -59,6 +60,8 @@ impl RecordId {
 pub struct Store {
     place: Backend,
     known: Mutex<FxHashMap<ShortKey, RecordId>>,
+    /// Work of the run that uses the store.
+    ledger: Ledger,
 }
 
 #[derive(Debug)]
@@ -74,7 +77,17 @@ enum Backend {
 impl Store {
     /// In memory.
     pub fn in_memory() -> Self {
-        Self { place: Backend::Memory(RwLock::default()), known: Mutex::default() }
+        Self { place: Backend::Memory(RwLock::default()), known: Mutex::default(), ledger: Ledger::default() }
+    }
+
+    /// True if the run has spent so much on failed blocks that another network is not worth trying.
+    pub(crate) fn is_hopeless(&self) -> bool {
+        self.ledger.is_hopeless()
+    }
+
+    /// Work of the run that uses the store.
+    pub(crate) fn ledger(&self) -> &Ledger {
+        &self.ledger
     }
 
     /// In a file of `folder` that has no name and is gone when the store is dropped, however the program ends.
@@ -84,7 +97,7 @@ impl Store {
     pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
         let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
         let log = LogFile::in_passing(folder).map_err(failed)?;
-        Ok(Self { place: Backend::File(log), known: Mutex::default() })
+        Ok(Self { place: Backend::File(log), known: Mutex::default(), ledger: Ledger::default() })
     }
 
     /// In a work directory, with the blocks that are there. `restart` throws away those of another network, other options
@@ -103,7 +116,11 @@ impl Store {
     pub(crate) fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
-        Ok(Self { place: Backend::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
+        Ok(Self {
+            place: Backend::Folder(folder.to_path_buf(), others, own),
+            known: Mutex::new(known),
+            ledger: Ledger::default(),
+        })
     }
 
     /// Something that is the same for all runs in a work directory: what one of them has made, or what `make` gives, which

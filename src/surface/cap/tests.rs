@@ -22,9 +22,9 @@ fn capped(arms: &[([f64; 3], f64, f64)], rho: f64) -> (CappedSurface, Vec<Closin
     let (tubes, ends) = star(arms);
     let smallest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
     let params = SurfaceParams::with_voxel(2.0 * smallest / rho);
-    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default(), &Watch::NOBODY).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    (cap_terminals(&wall, &mut field, &ends, &params).unwrap(), ends)
+    (cap_terminals(&wall, &mut field, &ends, &params, false, &Watch::NOBODY).unwrap(), ends)
 }
 
 fn check(surface: &CappedSurface, ends: &[Closing], smallest_angle: f64) {
@@ -93,8 +93,45 @@ fn a_terminal_inside_another_vessel_is_refused() {
     let arms = [([-9.0, 0.0, 0.0], 2.0, 2.0), ([9.0, 0.0, 0.0], 2.0, 2.0), ([3.0, 1.0, 0.0], 1.0, 1.0)];
     let (tubes, ends) = star(&arms);
     let params = SurfaceParams::with_voxel(0.6);
-    let wall = vessel_wall(&tubes, &params, &Finer::default()).unwrap();
+    let wall = vessel_wall(&tubes, &params, &Finer::default(), &Watch::NOBODY).unwrap();
     let mut field = Field::new(&tubes, params.kappa).unwrap();
-    let error = cap_terminals(&wall, &mut field, &ends, &params).unwrap_err();
+    let error = cap_terminals(&wall, &mut field, &ends, &params, false, &Watch::NOBODY).unwrap_err();
     assert!(matches!(error, CapError::End { end: 2, node: Some(NodeId(2)), .. }), "{error}");
+}
+
+#[test]
+fn the_tree_finds_all_faces_near_a_tip() {
+    let tubes = [Tube { a: Point3::origin(), b: Point3::new(9.0, 0.0, 0.0), ra: 1.0, rb: 1.0 }];
+    let wall = vessel_wall(&tubes, &SurfaceParams::with_voxel(0.4), &Finer::default(), &Watch::NOBODY).unwrap();
+    let count = wall.mesh.triangles.len();
+    let (few, many) = (TipSearch::of(&wall.mesh, FEW), TipSearch::of(&wall.mesh, FEW + 1));
+    assert_eq!(few.near(&Point3::origin(), 1.0), (0..count as u32).collect::<Vec<u32>>());
+    for x in [0.0, 3.0, 9.0] {
+        let p = Point3::new(x, 0.2, -0.1);
+        let near = many.near(&p, 1.5);
+        assert!(near.is_sorted() && near.len() < count);
+        let is_near = |&f: &u32| (wall.mesh.points[wall.mesh.triangles[f as usize][0] as usize] - p).norm() <= 1.5;
+        assert!((0..count as u32).filter(is_near).all(|f| near.contains(&f)));
+        let section = Section { origin: p, axis: Vec3::x(), radius: 1.0 };
+        assert_eq!(few.tip(&section).0, many.tip(&section).0);
+    }
+}
+
+#[test]
+fn terminals_that_cannot_be_capped_are_left_open_if_they_may_be() {
+    let arms = [([6.0, 0.0, 0.0], 1.0, 1.0), ([-6.0, 0.0, 0.0], 1.0, 1.0), ([0.0, 6.0, 0.0], 1.0, 1.0)];
+    let (tubes, mut ends) = star(&arms);
+    // No tip lies beyond this plane.
+    ends[1].section.origin.x = -30.0;
+    let params = SurfaceParams::with_voxel(0.5);
+    let wall = vessel_wall(&tubes, &params, &Finer::default(), &Watch::NOBODY).unwrap();
+    let mut field = Field::new(&tubes, params.kappa).unwrap();
+    let mut made = |may_leave| cap_terminals(&wall, &mut field, &ends, &params, may_leave, &Watch::NOBODY);
+    assert!(matches!(made(false), Err(CapError::End { end: 1, reason: CapFailure::NoTip, .. })));
+    let capped = made(true).unwrap();
+    assert_eq!([0, 1, 2].map(|end| capped.cap.contains(&Some(end))), [true, false, true]);
+    // Only the other two ends given, the surface is the same.
+    let two = [ends[0], ends[2]];
+    let alone = cap_terminals(&wall, &mut field, &two, &params, false, &Watch::NOBODY).unwrap();
+    assert_eq!(alone.mesh, capped.mesh);
 }

@@ -50,6 +50,7 @@ impl<L: Level> Relaxation<'_, L> {
         }
         finish(self);
         if let Some(before) = before
+            && self.stopped.is_none()
             && !self.is_sound_since(first)
         {
             self.go_back(before);
@@ -60,7 +61,11 @@ impl<L: Level> Relaxation<'_, L> {
     /// Splits the edges of webs; returns true if any existed.
     fn split_webs(&mut self, before: &mut Option<SavedVertices>) -> bool {
         let mut any = false;
-        for i in 0..self.half_count() {
+        let count = self.half_count();
+        for i in 0..count {
+            if self.must_stop(i as usize, count as usize) {
+                return false;
+            }
             let h = self.half(i);
             if self.is_editable(h) && self.surface.from(h) < self.surface.to(h) && self.is_web(h) {
                 let size = self.aim(self.surface.from(h), self.surface.to(h)).min(SHRINK * self.surface.length(h));

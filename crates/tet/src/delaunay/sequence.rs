@@ -9,10 +9,13 @@ use anastomesh_mesh::geometry::predicates::{collinear, orient3d};
 /// Points between two checks for cancellation: some milliseconds.
 const ASKED_EVERY: u32 = 1024;
 
+/// Operations per inserted point, as counted by budgets.
+const OPERATIONS: usize = 20;
+
 /// Inserts all points in the given order: vertex `v` of the inserter is the point `order[v]`.
 ///
 /// # Errors
-/// [`TetError::Flat`], [`TetError::DuplicatePoints`], [`TetError::Cancelled`].
+/// [`TetError::Flat`], [`TetError::DuplicatePoints`], [`TetError::Cancelled`], [`TetError::OverBudget`].
 pub(super) fn insert_all(points: &[Point3], order: &[u32], watch: &Watch) -> Result<Inserter, TetError> {
     let sorted: Vec<Point3> = order.iter().map(|&i| points[i as usize]).collect();
     let seed = seed_tet(&sorted).ok_or(TetError::Flat)?;
@@ -22,7 +25,7 @@ pub(super) fn insert_all(points: &[Point3], order: &[u32], watch: &Watch) -> Res
     let mut duplicates: Vec<(u32, u32)> = Vec::new();
     for v in 0..order.len() as u32 {
         if v.is_multiple_of(ASKED_EVERY) {
-            watch.ask()?;
+            watch.spend(OPERATIONS * ASKED_EVERY as usize)?;
         }
         if !seed.contains(&v)
             && let Err(twin) = inserter.insert(v)

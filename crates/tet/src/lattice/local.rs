@@ -2,7 +2,9 @@
 //! kept where the nearest vertex of the surface has edges of that band.
 
 use super::{edges_at_vertices, graded_lattice_points, sites};
+use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rustc_hash::FxHashMap;
@@ -15,19 +17,25 @@ const APART: f64 = 0.62;
 
 const MOST_BANDS: usize = 12;
 
+/// Points between two checks for cancellation and the budget.
+const ASKED_EVERY: usize = 4096;
+
 /// Points of body-centred cubic lattices inside the closed `surface`. Cubes have side `cell`, and points at least
 /// `clearance` from the surface, both in nearby edge lengths. Away from the surface cubes are 2, 4, ... times as large.
 /// The result is deterministic.
-pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec<Point3> {
+///
+/// # Errors
+/// [`Stop`] if the watch says so.
+pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
     let sizes = edges_at_vertices(surface);
     let Some(bands) = Bands::of(&sizes) else {
         let h = surface.mean_edge();
-        return graded_lattice_points(surface, cell * h, clearance * h);
+        return graded_lattice_points(surface, cell * h, clearance * h, watch);
     };
     let band: Vec<usize> = sizes.iter().map(|&s| bands.of_size(s)).collect();
     let places: Vec<[f64; 3]> = surface.points.iter().map(|p| [p.x, p.y, p.z]).collect();
     // Building fails only without points or with NaN coordinates.
-    let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return Vec::new() };
+    let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return Ok(Vec::new()) };
     let size_of = |t: &[u32; 3]| t.iter().map(|&v| sizes[v as usize]).sum::<f64>() / 3.0;
     let mut taken = Taken::new(APART * cell * bands.middle(bands.count - 1));
     let mut points = Vec::new();
@@ -35,9 +43,12 @@ pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec
         let near = |t: &[u32; 3]| t.iter().any(|&v| band[v as usize].abs_diff(k) <= 1);
         let clear = |t: &[u32; 3]| near(t).then(|| clearance * size_of(t));
         let side = cell * bands.middle(k);
-        let Some((lattice, mut columns)) = sites(surface, side, clear) else { continue };
-        columns.thin();
-        for p in columns.places(&lattice) {
+        let Some((lattice, mut columns)) = sites(surface, side, clear, watch)? else { continue };
+        columns.thin(watch)?;
+        for (i, p) in columns.places(&lattice).into_iter().enumerate() {
+            if i.is_multiple_of(ASKED_EVERY) {
+                watch.spend(10 * ASKED_EVERY)?;
+            }
             let nearest = tree.query(&[p.x, p.y, p.z]).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize;
             if band[nearest] == k && taken.is_free(&p, APART * side, k) {
                 taken.push(&p, k);
@@ -45,7 +56,7 @@ pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64) -> Vec
             }
         }
     }
-    points
+    Ok(points)
 }
 
 /// Bands of edge lengths with equal ratio.
@@ -154,7 +165,7 @@ mod tests {
     fn points_lie_as_densely_as_the_surface_nearby() {
         let (cell, clearance) = (1.35, 0.37);
         let s = horn(40, 1.05);
-        let points = local_lattice_points(&s, cell, clearance);
+        let points = local_lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap();
         // Slices as long as wide have similar counts everywhere. 40 rings widen by 1.05⁴⁰ = 7.
         let radius = |z: f64| 1.0 + z * 0.05 / 0.45;
         let widest = radius(s.points[s.points.len() - 1].z);
@@ -176,6 +187,7 @@ mod tests {
     fn even_surfaces_get_the_graded_lattice() {
         let s = horn(12, 1.0);
         let h = s.mean_edge();
-        assert_eq!(local_lattice_points(&s, 1.2, 0.4), graded_lattice_points(&s, 1.2 * h, 0.4 * h));
+        let graded = graded_lattice_points(&s, 1.2 * h, 0.4 * h, &Watch::NOBODY);
+        assert_eq!(local_lattice_points(&s, 1.2, 0.4, &Watch::NOBODY), graded);
     }
 }

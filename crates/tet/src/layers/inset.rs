@@ -85,7 +85,7 @@ pub fn inset(
                 let (mesh, of_layers) = stack.around(&core);
                 return Ok(Inset { mesh, of_layers, numbers, shares: ways.shares });
             }
-            Err(TetError::Cancelled) => return Err(TetError::Cancelled),
+            Err(error) if error.is_stop() => return Err(error),
             Err(error) => {
                 let meeting = if places.is_narrow { Vec::new() } else { meeting() };
                 ways.drawn_back = if meeting.is_empty() { failures.next().unwrap_or(0.0) } else { DRAWN_BACK };

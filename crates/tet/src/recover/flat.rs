@@ -4,6 +4,7 @@ use super::Recovery;
 use super::rule::Rule;
 use crate::complex::Complex;
 use crate::input::SurfaceEdges;
+use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 
 /// Maximum depth of nested flips for a flat tetrahedron.
@@ -14,7 +15,7 @@ const BUDGET: u32 = 100;
 
 /// Flips away tetrahedra no thicker than `height`, if possible without loss of recovered surface parts.
 pub(super) fn dissolve_flat(c: &mut Complex, surface: &TriMesh, edges: &SurfaceEdges, height: f64) {
-    Recovery::new(c, surface, edges, Rule::Thick(height)).dissolve();
+    Recovery::new(c, surface, (edges, Rule::Thick(height)), &Watch::NOBODY).dissolve();
 }
 
 impl Recovery<'_> {

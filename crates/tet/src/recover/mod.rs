@@ -23,6 +23,7 @@ use super::progress::{Stage, Watch};
 use super::star::{EdgeRing, Star};
 use super::survey::survey;
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::budget::Stop;
 use cavity::Cavity;
 use march::{Crossing, crossings, piercing_edges};
 pub(super) use rule::{Rule, flat_height, flat_height_in_single};
@@ -49,6 +50,9 @@ const MANY: usize = 100;
 /// Maximum lost edges and triangles for which slow progress is accepted in early rounds.
 const FEW: usize = 8;
 
+/// Operations per flip of a crossing, nested flips included, as counted by budgets.
+const OPERATIONS: usize = 100;
+
 /// Counts of boundary recovery.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecoverySummary {
@@ -70,7 +74,7 @@ pub(super) fn recover(
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
-    let mut r = Recovery::new(c, surface, edges, rule);
+    let mut r = Recovery::new(c, surface, (edges, rule), watch);
     let mut summary = RecoverySummary {
         missing_edges: lost_edges.len(),
         missing_triangles: lost_faces.len(),
@@ -83,11 +87,13 @@ pub(super) fn recover(
         let total = summary.missing_edges + summary.missing_triangles;
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         let in_vain = r.recover_edges(&mut lost_edges);
+        r.stopped.map_or(Ok(()), Err)?;
         if in_vain && r.met.is_none() {
             break;
         }
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
-        lost_faces.retain(|&f| r.met.is_some() || !r.recover_face(f));
+        lost_faces.retain(|&f| r.met.is_some() || r.stopped.is_some() || !r.recover_face(f));
+        r.stopped.map_or(Ok(()), Err)?;
         if let Some(error) = r.met {
             return Err(error);
         }
@@ -123,10 +129,18 @@ struct Recovery<'a> {
     round: u32,
     /// Proof that the surface intersects itself.
     met: Option<TetError>,
+    watch: &'a Watch<'a>,
+    /// Reason to end early.
+    stopped: Option<Stop>,
 }
 
 impl<'a> Recovery<'a> {
-    fn new(c: &'a mut Complex, surface: &'a TriMesh, edges: &'a SurfaceEdges, rule: Rule) -> Self {
+    fn new(
+        c: &'a mut Complex,
+        surface: &'a TriMesh,
+        (edges, rule): (&'a SurfaceEdges, Rule),
+        watch: &'a Watch<'a>,
+    ) -> Self {
         Self {
             c,
             surface,
@@ -141,7 +155,15 @@ impl<'a> Recovery<'a> {
             budget: 0,
             round: 0,
             met: None,
+            watch,
+            stopped: None,
         }
+    }
+
+    /// Counts the flips of one edge or triangle.
+    fn count(&mut self) {
+        let flips = (BUDGET - self.budget) as usize;
+        self.stopped = self.stopped.or(self.watch.spend(OPERATIONS * (1 + flips)).err());
     }
 
     /// Seed for the random choices of a round.
@@ -154,7 +176,7 @@ impl<'a> Recovery<'a> {
         let missing = lost.clone();
         let (mut tried, mut failed, mut in_vain) = (0, 0, false);
         lost.retain(|&edge| {
-            if in_vain || self.met.is_some() {
+            if in_vain || self.met.is_some() || self.stopped.is_some() {
                 return true;
             }
             tried += 1;
@@ -205,6 +227,7 @@ impl<'a> Recovery<'a> {
             }
         };
         self.way = way;
+        self.count();
         done
     }
 
@@ -254,6 +277,7 @@ impl<'a> Recovery<'a> {
             tried = if self.clear_edge(t, p, q, DEPTH) { 0 } else { tried + 1 };
         };
         self.piercers = piercers;
+        self.count();
         done
     }
 }

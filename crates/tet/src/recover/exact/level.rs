@@ -10,6 +10,7 @@ use super::plane::{Patch, Plane};
 use super::push::Push;
 use super::sectors::{Sector, refill};
 use super::space::Space;
+use super::ways::OPERATIONS;
 use super::wider::Wider;
 use crate::error::TetError;
 use crate::input::SurfaceEdges;
@@ -145,7 +146,7 @@ pub(super) fn level_out(
         };
         let mut again = Vec::new();
         for (tried, edge) in left.into_iter().enumerate() {
-            watch.ask()?;
+            watch.spend(OPERATIONS)?;
             if !level.insert(edge) {
                 again.push(edge);
             }

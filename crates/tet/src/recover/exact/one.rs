@@ -4,6 +4,7 @@ use super::facets::cover;
 use super::helpers::add_helpers;
 use super::parts::Part;
 use super::push::Push;
+use super::ways::OPERATIONS;
 use crate::delaunay::hash;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::progress::Watch;
@@ -55,9 +56,12 @@ pub(super) fn recover_part(
     budget: usize,
     watch: &Watch,
 ) -> Result<(), TetError> {
-    let spend = |push: &Push, on: Obstacle| {
-        watch.ask()?;
-        let over = push.s.implicit_vertices() > budget;
+    let mut counted = push.s.implicit_vertices();
+    let mut spend = |push: &Push, on: Obstacle| {
+        let vertices = push.s.implicit_vertices();
+        watch.spend(OPERATIONS * (1 + vertices - counted))?;
+        counted = vertices;
+        let over = vertices > budget;
         if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
     };
     let helpers = add_helpers(push, part, salt);
@@ -89,10 +93,10 @@ pub(super) fn recover_part(
     }
     #[cfg(test)]
     push.s.check();
-    push.settle()?;
+    push.settle(watch)?;
     if !helpers.triangles.is_empty() {
         push.drop_helpers(&helpers.triangles, beside..push.segments.list.len() as u32, inner);
-        push.settle()?;
+        push.settle(watch)?;
     }
     summary.steiner_points += push.finish();
     let lost = part.triangles.iter().map(|&t| push.triangles[t as usize]).find(|&t| push.s.find_face(t).is_none());

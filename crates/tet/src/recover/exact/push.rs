@@ -10,8 +10,10 @@ use super::parts::sides;
 use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
 use super::space::Space;
+use super::ways::OPERATIONS;
 use super::wider::Wider;
 use crate::error::{Obstacle, Stuck, TetError};
+use crate::progress::Watch;
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_mesh::geometry::implicit::OnTriangle;
 use rustc_hash::FxHashMap;
@@ -141,22 +143,22 @@ impl<'a> Push<'a> {
 
     /// Pushes all vertices off their segments and facets. Vertices without clearance are retried after others have
     /// moved. The clearance level drops only if nothing better exists, since tight positions leave less to others.
-    pub(super) fn settle(&mut self) -> Result<(), TetError> {
+    pub(super) fn settle(&mut self, watch: &Watch) -> Result<(), TetError> {
         let mut left = std::mem::take(&mut self.left);
         #[cfg(test)]
         if WIDER_FIRST.get() {
-            self.clear_wider(&mut left)?;
+            self.clear_wider(&mut left, watch)?;
         }
-        self.clear(&mut left)?;
-        self.clear_wider(&mut left)?;
+        self.clear(&mut left, watch)?;
+        self.clear_wider(&mut left, watch)?;
         while !left.is_empty() {
             let before = left.len();
             let moved = left.iter().filter(|&&(host, v)| self.slide(host, v)).count();
             if moved == 0 {
                 break;
             }
-            self.clear(&mut left)?;
-            self.clear_wider(&mut left)?;
+            self.clear(&mut left, watch)?;
+            self.clear_wider(&mut left, watch)?;
             if left.len() == before {
                 break;
             }
@@ -178,16 +180,16 @@ impl<'a> Push<'a> {
     }
 
     /// Pushes off all vertices that have clearance, level by level.
-    fn clear(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
+    fn clear(&mut self, left: &mut Vec<(Host, u32)>, watch: &Watch) -> Result<(), TetError> {
         let mut level = 0;
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
             // Vertices that merge with a neighbor leave clearance for the others, so they come first.
-            self.pass(left, level, PlacementMethod::Corners)?;
+            self.pass(left, level, PlacementMethod::Corners, watch)?;
             let slow = |left: &[(Host, u32)]| (before - left.len()) * SLOW < before;
             if slow(left) {
                 self.relax(LEVELS[level]);
-                self.pass(left, level, PlacementMethod::Points)?;
+                self.pass(left, level, PlacementMethod::Points, watch)?;
             }
             level = if slow(left) { level + 1 } else { level };
         }
@@ -195,7 +197,7 @@ impl<'a> Push<'a> {
     }
 
     /// Pushes vertices without clearance into wider cavities.
-    fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
+    fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>, watch: &Watch) -> Result<(), TetError> {
         let mut level = WIDER_FROM;
         #[cfg(test)]
         if WIDER_FIRST.get() {
@@ -203,11 +205,11 @@ impl<'a> Push<'a> {
         }
         while level < LEVELS.len() && !left.is_empty() {
             let before = left.len();
-            self.pass(left, level, PlacementMethod::Wider)?;
+            self.pass(left, level, PlacementMethod::Wider, watch)?;
             if left.len() == before {
                 level += 1;
             } else {
-                self.clear(left)?;
+                self.clear(left, watch)?;
             }
         }
         Ok(())
@@ -228,11 +230,18 @@ impl<'a> Push<'a> {
         moved
     }
 
-    fn pass(&mut self, left: &mut Vec<(Host, u32)>, level: usize, way: PlacementMethod) -> Result<(), TetError> {
+    fn pass(
+        &mut self,
+        left: &mut Vec<(Host, u32)>,
+        level: usize,
+        way: PlacementMethod,
+        watch: &Watch,
+    ) -> Result<(), TetError> {
         let mut again = Vec::with_capacity(left.len());
         for &(host, v) in left.iter() {
             let least = LEVELS[level];
             if self.looks.worth(v, least, way) {
+                watch.spend(OPERATIONS)?;
                 match self.push(host, v, least, way)? {
                     Pushed::Off => continue,
                     Pushed::Not { room } => self.looks.found(v, room, way),

@@ -127,6 +127,9 @@ impl<'a, 'b> Queue<'a, 'b> {
 
     /// Undoes the last part: restores the saved state and repeats the parts recovered since.
     fn go_back(&mut self, saved: &mut Saved<'a, '_>, round: u64) -> Result<(), Failed> {
+        // The whole complex is copied.
+        let counted = self.watch.spend(saved.push.s.c.slots());
+        counted.map_err(|stop| Failed { error: stop.into(), again: false })?;
         (self.push, self.summary) = (saved.push.clone(), saved.summary);
         let done = std::mem::take(&mut saved.since);
         for part in &done {

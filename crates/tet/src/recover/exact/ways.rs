@@ -1,5 +1,8 @@
 //! Recovery strategies. Parts that fail with one often succeed with another.
 
+/// Operations per recovered edge, recovered triangle, and inserted or moved vertex, as counted by budgets.
+pub(super) const OPERATIONS: usize = 500;
+
 /// Maximum implicit vertices: per missing edge, plus a constant.
 const VERTICES: (usize, usize) = (256, 1_000_000);
 

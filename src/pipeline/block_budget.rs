@@ -1,0 +1,112 @@
+//! Budget of a cluster: of each attempt, and of all together. It follows from the input of the cluster and the effort of the
+//! run alone, so that equal inputs have equal results on any machine.
+
+use super::effort::Effort;
+use super::estimate::attempt_cost;
+use super::plan::MeshPlan;
+use crate::block::{BlockError, BlockParams};
+use crate::partition::{Cluster, ClusterId};
+use anastomesh_mesh::budget::{Budget, OverBudget, Stop};
+use anastomesh_tet::parts::Watch;
+
+/// Maximum operations of an attempt: a constant, plus so many per expected operation. Attempts that succeed take at most
+/// three times the expected operations on the shared networks.
+const ATTEMPT: Effort = Effort { constant: 3e7, per_operation: 8.0 };
+
+/// Budget of a cluster.
+pub(super) struct BlockBudget<'a> {
+    id: ClusterId,
+    plan: &'a MeshPlan,
+    all: Budget,
+    watch: &'a Watch<'a>,
+}
+
+impl<'a> BlockBudget<'a> {
+    /// Budget of a cluster's attempts.
+    pub(super) fn of(id: ClusterId, cluster: &Cluster, plan: &'a MeshPlan, effort: Effort, watch: &'a Watch) -> Self {
+        let usual = attempt_cost(cluster, plan, &plan.block_params());
+        Self { id, plan, all: Budget::new(limit(effort, usual.operations)), watch }
+    }
+
+    /// True if no further attempt may be made.
+    pub(super) fn is_over(&self) -> bool {
+        self.watch.is_cancelled() || self.all.left() == 0
+    }
+
+    /// Operations so far.
+    pub(super) fn spent(&self) -> u64 {
+        self.all.spent()
+    }
+
+    /// Makes an attempt within its own budget, and that of all attempts.
+    ///
+    /// # Errors
+    /// Those of the attempt; [`BlockError::Memory`] if it is expected to take more memory than there is.
+    pub(super) fn attempt<T>(
+        &self,
+        cluster: &Cluster,
+        params: &BlockParams,
+        make: impl FnOnce(&Watch) -> Result<T, BlockError>,
+    ) -> Result<T, BlockError> {
+        let cost = attempt_cost(cluster, self.plan, params);
+        if cost.bytes > self.plan.memory {
+            return Err(BlockError::Memory { cluster: self.id, bytes: cost.bytes, limit: self.plan.memory });
+        }
+        if self.is_over() {
+            let over = OverBudget { limit: self.all.limit() };
+            let source = if self.watch.is_cancelled() { Stop::Cancelled } else { over.into() };
+            return Err(BlockError::Stopped { cluster: self.id, source });
+        }
+        let own = Budget::new(limit(ATTEMPT, cost.operations).min(self.all.left()));
+        let made = make(&self.watch.within(&own));
+        // The next attempt, if any, finds out.
+        let _ = self.all.spend(own.spent());
+        made
+    }
+}
+
+/// Casts of what is too large end at the largest integer.
+fn limit(effort: Effort, operations: f64) -> u64 {
+    (effort.constant + effort.per_operation * operations) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::fixtures::bifurcation;
+    use crate::pipeline::once;
+
+    #[test]
+    fn an_attempt_beyond_its_budget_ends_with_a_typed_fault() {
+        let (cluster, plan, watch) = (bifurcation(3), MeshPlan::default(), Watch::NOBODY);
+        let params = plan.block_params();
+        let of = |constant: f64| {
+            let effort = Effort { constant, per_operation: 0.0 };
+            let budget = BlockBudget::of(ClusterId(7), &cluster, &plan, effort, &watch);
+            let make = |watch: &Watch| once::cluster(ClusterId(7), &cluster, &params, |node| node.0, watch);
+            (budget.attempt(&cluster, &params, make), budget.spent(), budget.is_over())
+        };
+        let (made, spent, is_over) = of(1e8);
+        let expected = attempt_cost(&cluster, &plan, &params).operations;
+        assert!(made.is_ok() && !is_over);
+        assert!(spent as f64 > 0.3 * expected && (spent as f64) < 4.0 * expected, "{spent} {expected}");
+        for share in [0.0, 0.2, 0.5, 0.9] {
+            let (made, spent_then, is_over) = of(share * spent as f64);
+            assert!(is_over && spent_then <= spent);
+            let error = made.expect_err("a budget that is too small");
+            assert!(error.is_over_budget() && error.stage() == "budget", "{error}");
+            assert!(error.to_string().starts_with("cluster 7: it exceeds its budget of "), "{error}");
+            // The operations do not depend on anything but the input.
+            assert_eq!(of(share * spent as f64).1, spent_then);
+        }
+    }
+
+    #[test]
+    fn an_attempt_that_needs_too_much_memory_is_not_made() {
+        let plan = MeshPlan { memory: 1 << 20, ..MeshPlan::default() };
+        let cluster = bifurcation(3);
+        let budget = BlockBudget::of(ClusterId(0), &cluster, &plan, Effort::full(1), &Watch::NOBODY);
+        let made: Result<(), _> = budget.attempt(&cluster, &plan.block_params(), |_| panic!("it is not made"));
+        assert!(matches!(made, Err(BlockError::Memory { limit, .. }) if limit == 1 << 20));
+    }
+}

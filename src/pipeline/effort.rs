@@ -1,0 +1,98 @@
+//! Effort for retries in a run. Blocks that fail take the full budget as long as failures are rare. A network on which the
+//! run has already spent much in vain gets quick attempts only, so that it ends in a typed error in reasonable time.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Operations of failed blocks after which further blocks get a reduced budget: a constant, plus so many per expected
+/// operation of the run. The expected operations alone take the time of the estimate.
+const MUCH: [f64; 2] = [6e8, 10.0];
+
+/// Multiple of [`MUCH`] after which no other partition or network is tried.
+const HOPELESS: u64 = 2;
+
+/// Operations that all clusters of a run may take together beyond those in proportion to their size, were all to fail.
+const ALL_CLUSTERS: f64 = 2e10;
+
+/// Bounds of a cluster's share of it. The smaller one lets a bifurcation be tried in every way.
+const CLUSTER: [f64; 2] = [3e7, 1e8];
+
+/// Maximum operations of all attempts at a cluster: a constant, plus so many per expected operation of the usual one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    pub constant: f64,
+    pub per_operation: f64,
+}
+
+impl Effort {
+    /// Effort per cluster where failures are rare.
+    pub fn full(clusters: usize) -> Self {
+        Self { constant: (ALL_CLUSTERS / clusters.max(1) as f64).clamp(CLUSTER[0], CLUSTER[1]), per_operation: 25.0 }
+    }
+
+    /// Effort where they are not.
+    const REDUCED: Self = Self { constant: 1e7, per_operation: 4.0 };
+}
+
+/// Operations that a run expects, and those of blocks that failed. Only failed blocks count: they are made again by a run
+/// that continues, which therefore decides alike.
+#[derive(Debug, Default)]
+pub struct Ledger {
+    expected: AtomicU64,
+    in_vain: AtomicU64,
+}
+
+impl Ledger {
+    /// Records the expected operations of the run.
+    pub fn expect(&self, operations: f64) {
+        self.expected.fetch_max(operations as u64, Ordering::Relaxed);
+    }
+
+    /// Counts the operations of a failed block.
+    pub fn add(&self, operations: u64) {
+        self.in_vain.fetch_add(operations, Ordering::Relaxed);
+    }
+
+    /// Effort for each of so many clusters. Must not be asked while blocks are made, as results would depend on the order.
+    pub fn effort(&self, clusters: usize) -> Effort {
+        if self.in_vain() > self.much() { Effort::REDUCED } else { Effort::full(clusters) }
+    }
+
+    /// True if another partition or network is not worth trying.
+    pub fn is_hopeless(&self) -> bool {
+        self.in_vain() > HOPELESS * self.much()
+    }
+
+    fn in_vain(&self) -> u64 {
+        self.in_vain.load(Ordering::Relaxed)
+    }
+
+    fn much(&self) -> u64 {
+        (MUCH[0] + MUCH[1] * self.expected.load(Ordering::Relaxed) as f64) as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effort_falls_when_much_was_spent_in_vain() {
+        let ledger = Ledger::default();
+        ledger.expect(1e9);
+        ledger.expect(1e8);
+        assert_eq!(ledger.effort(10), Effort::full(10));
+        ledger.add(10_500_000_000);
+        assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::full(10), false));
+        ledger.add(1_000_000_000);
+        assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::REDUCED, false));
+        ledger.add(11_000_000_000);
+        assert!(ledger.is_hopeless());
+    }
+
+    #[test]
+    fn many_clusters_get_less_each() {
+        let constant = |clusters| Effort::full(clusters).constant;
+        assert_eq!([0, 1, 200].map(constant), [CLUSTER[1]; 3]);
+        assert!(constant(400) < CLUSTER[1] && constant(1_000_000) == CLUSTER[0]);
+    }
+}
