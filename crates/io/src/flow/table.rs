@@ -126,8 +126,8 @@ impl FlowTable {
     /// [`FlowTableFault`] with the line and the column.
     pub fn parse(bytes: &[u8]) -> Result<Self, FlowTableFault> {
         let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(|error| {
-            let newlines = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-            FlowTableFault::NotText { line: newlines + 1 }
+            let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
+            FlowTableFault::NotText { line }
         })?;
         let is_row = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.trim_start().starts_with('#');
         let mut rows = (1..).zip(text.lines()).filter(is_row).map(|(line, row)| (line, fields(row)));
