@@ -28,7 +28,7 @@ pub struct FlowArgs {
     #[arg(long, value_name = "RADII", value_parser = above_zero, allow_negative_numbers = true)]
     extend_inlets: Option<f64>,
     /// Flow rate into each inlet, in the mesh's unit of length cubed per second (default: Reynolds number 1). A file is a
-    /// CSV table of one period: time in seconds, then one column for all inlets, or one for each with its patch or node name
+    /// CSV table of one period: time in seconds, then a column for all inlets, or one per patch or node
     #[arg(long, value_name = "RATE|FILE.csv", allow_negative_numbers = true)]
     inflow: Option<InflowArg>,
     /// Velocity profile on inlets (default: that of the solver for a flow rate, parabolic in svMultiPhysics and uniform in
@@ -56,8 +56,8 @@ pub struct FlowArgs {
     /// Pressure at the inlets at mean flow; resistances take what the network leaves of it
     #[arg(long, value_name = "P", value_parser = number, allow_negative_numbers = true)]
     mean_pressure: Option<f64>,
-    /// Distribution of the resistance over the outlets: `network` keeps the flow rates of the one-dimensional solution,
-    /// `murray` is inverse to a power of the radius (default: network)
+    /// Distribution of the resistance over the outlets (default: network). `network` keeps the flow rates of the
+    /// one-dimensional solution, `murray` is inverse to a power of the radius
     #[arg(long, value_enum)]
     outlet_split: Option<SplitArg>,
     /// Exponent of the radius for `--outlet-split murray` (default: 3)

@@ -111,6 +111,9 @@ pub(crate) struct FlowSolution {
     pub waveforms: BTreeMap<NodeId, Waveform>,
 }
 
+/// Mean flow rate into each inlet, and the waveforms of pulsatile ones.
+type InletRates = (BTreeMap<NodeId, f64>, BTreeMap<NodeId, Waveform>);
+
 impl FlowPlan {
     /// Checks numbers that do not depend on a network.
     ///
@@ -192,7 +195,7 @@ impl FlowPlan {
     }
 
     /// Mean flow rate into each inlet, and its waveform if it is pulsatile.
-    fn rates(&self, inlets: &[InletSite]) -> Result<(BTreeMap<NodeId, f64>, BTreeMap<NodeId, Waveform>), FlowError> {
+    fn rates(&self, inlets: &[InletSite]) -> Result<InletRates, FlowError> {
         let table = match &self.inflow {
             Inflow::Usual => {
                 let usual = |radius| flow_of_reynolds(USUAL_REYNOLDS, radius, self.density, self.viscosity);

@@ -2,6 +2,7 @@
 
 use super::{Waveform, WaveformFault};
 use crate::file::FileError;
+use anastomesh_mesh::units::counted;
 use std::path::Path;
 
 /// Flow rates over one period, for one or several inlets.
@@ -62,7 +63,7 @@ pub enum FlowTableFault {
         column: String,
     },
     /// A row has another number of fields than the header.
-    #[error("line {line}: {found} fields instead of {expected}; give a time and a rate for each column")]
+    #[error("line {line}: {} instead of {expected}; give a time and a rate for each column", counted(*found, "field"))]
     FieldCount {
         /// Line of the file.
         line: usize,
@@ -126,8 +127,8 @@ impl FlowTable {
     /// [`FlowTableFault`] with the line and the column.
     pub fn parse(bytes: &[u8]) -> Result<Self, FlowTableFault> {
         let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(|error| {
-            let newlines = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-            FlowTableFault::NotText { line: newlines + 1 }
+            let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
+            FlowTableFault::NotText { line }
         })?;
         let is_row = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.trim_start().starts_with('#');
         let mut rows = (1..).zip(text.lines()).filter(is_row).map(|(line, row)| (line, fields(row)));
@@ -235,7 +236,7 @@ mod tests {
         assert!(fault("time\n0\n").starts_with("line 1: the only column is 'time'"));
         assert!(fault("0,1\n1,1\n").starts_with("line 1: the first row begins with 0"));
         assert!(fault("t,a,a\n0,1,1\n").starts_with("line 1: two columns are named 'a'"));
-        assert!(fault("t,a\n0,1\n1\n").starts_with("line 3: 1 fields instead of 2"));
+        assert!(fault("t,a\n0,1\n1\n").starts_with("line 3: 1 field instead of 2"));
         assert!(fault("t,a\n0,1\n0.5,\n1,1\n").starts_with("line 3, column 'a': empty"));
         assert!(
             fault("t,a\n0,1\n# note\nlater,1\n").starts_with("line 4, column 't': expected a number, found 'later'")
@@ -244,7 +245,7 @@ mod tests {
         assert!(fault("t,a\n0,1\n0.5,1\n0.4,1\n").starts_with("line 4, column 't': time 0.4 of sample 3"));
         assert!(fault("t,a\n1,1\n2,1\n").starts_with("line 2, column 't': the first time is 1"));
         assert!(fault("t,a,b\n0,1,1\n1,1,2\n").starts_with("line 3, column 'b': the period ends with rate 2"));
-        assert!(fault("t,a\n0,1\n").starts_with("line 2, column 't': 1 times and 1 rates"));
+        assert!(fault("t,a\n0,1\n").starts_with("line 2, column 't': 1 time and 1 rate"));
         assert!(matches!(FlowTable::parse(b"t,a\n0,\xff\n"), Err(FlowTableFault::NotText { line: 2 })));
     }
 

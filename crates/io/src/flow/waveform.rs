@@ -1,5 +1,7 @@
 //! Periodic flow rate.
 
+use anastomesh_mesh::units::counted;
+
 /// Periodic flow rate, linear between samples.
 ///
 /// The last sample is the first of the next period.
@@ -14,7 +16,7 @@ pub struct Waveform {
 #[non_exhaustive]
 pub enum WaveformFault {
     /// Fewer than two samples, or another number of times than of rates.
-    #[error("{times} times and {rates} rates; give at least two samples")]
+    #[error("{} and {}; give at least two samples", counted(*times, "time"), counted(*rates, "rate"))]
     TooFew {
         /// Number of times.
         times: usize,

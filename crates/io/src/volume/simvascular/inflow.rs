@@ -154,7 +154,9 @@ fn rim(triangles: &[[usize; 3]], points: usize) -> Vec<bool> {
     }
     let mut is_rim = vec![false; points];
     for edge in count.into_iter().filter(|(_, faces)| *faces == 1).map(|(edge, _)| edge) {
-        edge.into_iter().for_each(|point| is_rim[point] = true);
+        for point in edge {
+            is_rim[point] = true;
+        }
     }
     is_rim
 }

@@ -21,7 +21,10 @@ pub(super) fn velocities_path(patch: &str) -> String {
 }
 
 pub(super) fn is_ours(name: &str) -> bool {
-    let inflow = |name: &str| !name.contains('/') && (name.ends_with(".flow") || name.ends_with(".velocity"));
+    let inflow = |name: &str| {
+        let patch = name.strip_suffix(".flow").or_else(|| name.strip_suffix(".velocity"));
+        patch.is_some_and(|patch| !patch.contains('/'))
+    };
     let surface = |name: &str| name.strip_prefix("mesh-surfaces/").and_then(|own| own.strip_suffix(".vtp")).is_some();
     [MESH, EXTERIOR, WALLS, SOLVER].contains(&name) || surface(name) || inflow(name)
 }

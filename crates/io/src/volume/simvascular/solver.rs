@@ -48,12 +48,12 @@ fn general(steps: &Steps) -> String {
 
 /// Comment on resistances with a pressure beyond them, which the solver does not have.
 fn remark(patches: &[Patch], flow: &Flow) -> String {
-    let outlets = patches.iter().filter(|patch| patch.is_outlet()).map(|patch| flow.at(patch).outlet);
+    let mut outlets = patches.iter().filter(|patch| patch.is_outlet()).map(|patch| flow.at(patch).outlet);
     let beyond = |outlet| match outlet {
         OutletModel::Resistance { distal_pressure, .. } => Some(distal_pressure).filter(|pressure| *pressure != 0.0),
         _ => None,
     };
-    outlets.filter_map(beyond).next().map_or_else(String::new, |pressure| {
+    outlets.find_map(beyond).map_or_else(String::new, |pressure| {
         format!(
             "  <!-- The solver's resistances end at pressure 0. Add {pressure:e}, the pressure beyond the outlets, to all \
              pressures of the results; velocities are the same. -->\n"
