@@ -55,7 +55,8 @@ pub struct Args {
     /// terminal of each component)
     #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
-    /// Move overlapping vessels apart first, in at most N iterations, as `mesh` does
+    /// Move overlapping vessels apart first, in at most N iterations, unless `mesh` first tries the network as it is. The
+    /// network of a mesh is written by `mesh --refined`
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200", help_heading = "Run")]
     refine: Option<usize>,
     #[command(flatten)]
@@ -181,7 +182,7 @@ impl Args {
         }
         let prepared = run.prepared().map_err(|e| self.explain(e))?;
         let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
-        let read = remarks(notes, &networks.prepare, self.common.verbose);
+        let read = remarks(notes, &networks.prepare, &networks.names, self.common.verbose);
         for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
             bars.note(&remark);
         }
