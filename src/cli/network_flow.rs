@@ -196,7 +196,7 @@ impl Args {
     fn write(&self, kind: Kind, plan: &FlowPlan, prepared: &PreparedRun, stop: &Stop) -> Result<FlowSummary, Failure> {
         let network: &Skeleton = &prepared.networks.network;
         let viscosity = plan.viscosity;
-        let (solved, supply) = self.solved(plan, prepared)?;
+        let (solved, supply) = Self::solved(plan, prepared)?;
         let flow = VesselFlow::of(network, &solved, viscosity);
         let lumped = self.vessels == VesselsArg::Branches;
         stop.keep();
@@ -263,7 +263,7 @@ impl Args {
     }
 
     /// Solves for the flow with the conditions of the options.
-    fn solved(&self, flow: &FlowPlan, prepared: &PreparedRun) -> Result<(NetworkFlow, Supply), Failure> {
+    fn solved(flow: &FlowPlan, prepared: &PreparedRun) -> Result<(NetworkFlow, Supply), Failure> {
         let network = &prepared.networks.network;
         let inlets = prepared.inlets.sites(network);
         let names = &prepared.networks.names;
