@@ -144,16 +144,17 @@ def flow(
     and compared with the one-dimensional solution. The result holds a summary, and the table of vessels in ``table``: a numpy
     array for each column. ``output`` also writes a file: .json (model for svZeroDSolver), .in (svOneDSolver), .vtp or .csv.
     """
+    given = _given(network, edges, radii)
     with work_folder() as folder:
-        given = _given(network, edges, radii)
         table = os.path.join(folder, "flow.csv")
         done = _run_with_roots(_FLOW, given, options, [f"--output={table}"], progress, folder)
         report = dict(done.ensure_success().report or {})
         report["table"] = _columns(table)
-        if output is not None:
+    if output is not None:
+        with work_folder() as folder:
             words = [f"--output={os.fspath(output)}"]
             _run_with_roots(_FLOW, given, options, words, None, folder).ensure_success()
-        return report
+    return report
 
 
 @_PREPARE.documents

@@ -55,7 +55,8 @@ pub struct Args {
     /// terminal of each component)
     #[arg(long, help_heading = "Run", value_name = "NODE")]
     root: Vec<String>,
-    /// Move overlapping vessels apart first, in at most N iterations, as `mesh` does
+    /// Move overlapping vessels apart first, in at most N iterations, unless `mesh` first tries the network as it is. The
+    /// network of a mesh is written by `mesh --refined`
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200", help_heading = "Run")]
     refine: Option<usize>,
     #[command(flatten)]
@@ -195,7 +196,7 @@ impl Args {
     fn write(&self, kind: Kind, plan: &FlowPlan, prepared: &PreparedRun, stop: &Stop) -> Result<FlowSummary, Failure> {
         let network: &Skeleton = &prepared.networks.network;
         let viscosity = plan.viscosity;
-        let (solved, supply) = self.solved(plan, prepared)?;
+        let (solved, supply) = Self::solved(plan, prepared)?;
         let flow = VesselFlow::of(network, &solved, viscosity);
         let lumped = self.vessels == VesselsArg::Branches;
         stop.keep();
@@ -262,7 +263,7 @@ impl Args {
     }
 
     /// Solves for the flow with the conditions of the options.
-    fn solved(&self, flow: &FlowPlan, prepared: &PreparedRun) -> Result<(NetworkFlow, Supply), Failure> {
+    fn solved(flow: &FlowPlan, prepared: &PreparedRun) -> Result<(NetworkFlow, Supply), Failure> {
         let network = &prepared.networks.network;
         let inlets = prepared.inlets.sites(network);
         let names = &prepared.networks.names;

@@ -51,7 +51,9 @@ pub fn solve_between(
             [Some(_), Some(_)] => {}
         }
     }
-    inlets.iter().for_each(|(&node, &flow)| network.let_in(node.0, flow));
+    for (&node, &flow) in inlets {
+        network.let_in(node.0, flow);
+    }
     let mut pressure = network.pressures()?;
     for (pressure, fixed) in pressure.iter_mut().zip(&fixed) {
         *pressure = fixed.unwrap_or(*pressure) + lowest;
