@@ -48,6 +48,7 @@ mod setters;
 pub mod shapes;
 pub mod smooth;
 pub mod source;
+pub mod stacks;
 pub mod units;
 
 pub use bounds::{Bound, Bounds, REGULAR_DIHEDRAL};

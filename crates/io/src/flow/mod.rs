@@ -14,9 +14,11 @@ mod conditions;
 mod outlet;
 mod transient;
 mod waveform;
+mod womersley;
 
 pub use conditions::{BLOOD_DENSITY, BLOOD_VISCOSITY, CapFlow, Flow, USUAL_REYNOLDS, flow_of_reynolds};
 pub(crate) use conditions::{Role, plain};
 pub use outlet::OutletModel;
 pub use transient::{Profile, Transient};
 pub use waveform::{Waveform, WaveformFault};
+pub(crate) use womersley::{Harmonic, poiseuille, womersley};

@@ -6,7 +6,7 @@ use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use std::fs;
 
 /// Lists of a binary file, as words.
-fn lists(path: &Path) -> Vec<Vec<u32>> {
+pub(super) fn lists(path: &Path) -> Vec<Vec<u32>> {
     let bytes = fs::read(path).unwrap();
     let mut at = bytes.windows(3).position(|w| w == b"}\n\n").unwrap() + 3;
     let mut lists = Vec::new();
