@@ -30,8 +30,8 @@ pub(super) struct Figures {
     /// Maximum angle between a face normal and the line between the centres of its cells, in degrees.
     pub(super) max_angle: f64,
     /// Sum of these angles over the faces.
-    angles: f64,
-    faces: u64,
+    pub(super) angles: f64,
+    pub(super) faces: u64,
     /// Maximum distance of the centre of a face from the line between the centres of its cells, as a fraction of the
     /// face's extent in this direction.
     pub(super) skewness: f64,

@@ -122,7 +122,7 @@ fn flow_in_time_has_a_ramp_a_table_and_final_solvers() {
     assert!(text(&folder, "system/fvSchemes").contains("default backward"));
     // By density. The pressure starts behind the proximal resistance: 0.5 + 8 · 2e-3.
     let pressure = text(&folder, "0/p");
-    let line = "outlet_0 { $outletModel; Rp 2e0; Rd 8e0; tau 8e-1; P 5e-1; start 5.16e-1; value uniform 5.16e-1; }";
+    let line = "outlet_0 { $outletModel; Rp 2e0; Rd 8e0; tau 8e-1; P 5e-1; value uniform 5.16e-1; }";
     assert!(pressure.contains(line), "{pressure}");
     assert!(pressure.contains("\"R=Rp+Rd*dt/(tau+dt)\"") && pressure.contains("internalField   uniform 5.16e-1"));
 }

@@ -5,7 +5,8 @@
 //!
 //! The pressure of an outlet should be P + R Q, with the flow rate Q of the previous iteration. Such a condition
 //! diverges if R exceeds the resistance of the cells at the outlet. Therefore part of the pressure p of the face follows
-//! the pressure of its cell: p = f V + (1 - f) p_cell. The value V is integrated, V += P + R Q - p, until p = P + R Q.
+//! the pressure of its cell: p = f V + (1 - f) p_cell. The value V is integrated, V += P + R Q - mean(p), until the mean
+//! pressure of the outlet is P + R Q. Within the outlet the pressure varies as in the cells.
 //! The fraction f = 1 / (1 + R G) contains the conductance G of half a cell, for which the pressure equation knows the
 //! change of Q. An estimate of G that is too high delays convergence, and one below half of it diverges.
 
@@ -13,12 +14,12 @@ use super::boundary::{Boundary, FoamPatch};
 use crate::flow::{Flow, OutletModel, Role};
 use std::fmt::Write;
 
-/// Conductance of half a tetrahedron of edge h behind the area A, by the diagonal of the momentum equation: the distance
-/// from its centre to the face is 0.2 h, and the diagonal is 30 ν / h² per volume. G = A h / (6 ν), times this factor by
-/// which the SIMPLEC algorithm with relaxation α increases it: 1 / ((1 - α) / α + wall), where the walls' share of
-/// the diagonal is about 0.2.
+/// Factor by which the SIMPLEC algorithm with relaxation α increases the conductance G of half a tetrahedron.
+///
+/// G follows from the diagonal of the momentum equation, about 30 ν / h² per volume for the edge h. The distance from
+/// the centre to the face is 0.2 h, hence G = A h / (6 ν) for the area A.
 fn simplec(relaxation: f64) -> f64 {
-    1.0 / ((1.0 - relaxation) / relaxation + 0.2)
+    relaxation / (1.0 - relaxation)
 }
 
 /// Model of an outlet in OpenFOAM's pressure, which is divided by the density.
@@ -92,18 +93,20 @@ impl<'a> Outlets<'a> {
         }
         let has_capacitance = self.list.iter().any(|(_, model)| model.time > 0.0);
         let (conductance, why) = if self.is_transient {
-            (format!("sum(area())*h/({:e}+0.2*h*h/dt)", 6.0 * viscosity), "the time step")
+            // Twice the estimate, as a lower one than half of the true value would diverge.
+            (format!("sum(area())*h/({:e}+0.1*h*h/dt)", 3.0 * viscosity), "the time step")
         } else {
             (format!("sum(area())*h*{:e}", simplec(relaxation) / (6.0 * viscosity)), "SIMPLEC and its relaxation")
         };
-        let mut stored = vec![("V", "$start")];
+        // At the first evaluation V is the pressure from which the solver starts.
+        let mut stored = vec![("V", "0"), ("begun", "0")];
         let mut lines: Vec<String> = vec!["Rp=$Rp".into(), "Rd=$Rd".into(), "P=$P".into()];
         if self.is_transient {
             // The first evaluation in a time step sees the pressure and flow rate at the end of the previous one.
             stored.extend([("T", "0"), ("dt", "1e-9")]);
             if has_capacitance {
-                stored.push(("Pc", "$start"));
-                lines.extend(["tau=$tau".into(), "Pc=(time()>T)?average(p)-Rp*sum(phi):Pc".into()]);
+                stored.push(("Pc", "0"));
+                lines.extend(["tau=$tau".into(), "Pc=(time()>T)?sum(p*area())/sum(area())-Rp*sum(phi):Pc".into()]);
             }
             lines.extend(["dt=(time()>T)?time()-T:dt".into(), "T=time()".into()]);
         }
@@ -113,7 +116,7 @@ impl<'a> Outlets<'a> {
             lines.extend(["R=Rp+Rd".into(), "P0=P".into()]);
         }
         lines.extend(["h=1.5*sqrt(max(area()))".into(), format!("G={conductance}")]);
-        lines.extend(["f=1/(1+R*G)".into(), "V=V+P0+R*sum(phi)-p".into()]);
+        lines.extend(["f=1/(1+R*G)".into(), "mean=sum(p*area())/sum(area())".into(), "V=(begun>0.5)?V+P0+R*sum(phi)-mean:mean".into(), "begun=1".into()]);
         let mut text = format!(
             "// Pressure P + (Rp + Rd) Q at an outlet with the flow rate Q{}. Rp and Rd are resistances\n// by density. The \
              face follows its cell by 1 - f, so that the iteration is stable. The conductance G of\n// half a cell depends \
@@ -149,8 +152,8 @@ impl<'a> Outlets<'a> {
             } else {
                 writeln!(
                     text,
-                    "    {name} {{ $outletModel; Rp {proximal:e}; Rd {distal:e}; tau {time:e}; P {beyond:e}; start \
-                     {start:e}; value uniform {start:e}; }}"
+                    "    {name} {{ $outletModel; Rp {proximal:e}; Rd {distal:e}; tau {time:e}; P {beyond:e}; value \
+                     uniform {start:e}; }}"
                 )
             };
         }
