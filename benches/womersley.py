@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Womersley flow in a straight tube by pimpleFoam, against the analytic solution.
 
-usage: womersley.py [--anastomesh PROGRAM] [--rho 4] [--layers N] [--case FOLDER]
+usage: womersley.py [--anastomesh PROGRAM] [--rho 6] [--layers N] [--case FOLDER]
 needs: OpenFOAM (v1912 or later of openfoam.com) and numpy
 
-The tube has radius 5 mm and length 50 mm, the fluid is blood, and the flow rate 3e-6 (1 + 0.9 sin 2 pi t) m3/s of period
+The tube has radius 5 mm and length 30 mm, the fluid is blood, and the flow rate 3e-6 (1 + 0.9 sin 2 pi t) m3/s of period
 1 s (Womersley number 6.9). Its profile is set at the inlet. The velocity of the cells near the axis, in the middle
 fifth of the length, is compared over the second period."""
 import argparse, json, os, re, subprocess, tempfile
 import numpy as np
 
-RADIUS, LENGTH, RATE, SWING, PERIOD, NU = 5e-3, 50e-3, 3e-6, 0.9, 1.0, 3.5e-3 / 1060
+RADIUS, LENGTH, RATE, SWING, PERIOD, NU = 5e-3, 30e-3, 3e-6, 0.9, 1.0, 3.5e-3 / 1060
 OMEGA = 2 * np.pi / PERIOD
 
 
@@ -40,7 +40,7 @@ def make(program, case, rho, layers):
     """Writes the case and runs pimpleFoam."""
     folder = os.path.dirname(case)
     with open(f"{folder}/tube.swc", "w") as file:
-        file.writelines(f"{i + 1} 3 0 0 {5 * i} 5 {i or -1}\n" for i in range(11))
+        file.writelines(f"{i + 1} 3 0 0 {5 * i} 5 {i or -1}\n" for i in range(7))
     with open(f"{folder}/pulse.csv", "w") as file:
         file.write("time,flow\n")
         for i in range(101):
@@ -100,7 +100,7 @@ def compare(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--anastomesh", default="anastomesh")
-    parser.add_argument("--rho", type=float, default=4)
+    parser.add_argument("--rho", type=float, default=6)
     parser.add_argument("--layers", type=int)
     parser.add_argument("--case", help="a finished case instead of a new one")
     args = parser.parse_args()

@@ -166,11 +166,7 @@ pub fn in_part(tets: &[[u32; 4]], boundary: &FacePiece) -> (Vec<(usize, LayerCel
 }
 
 /// Layer that begins with the first of these tetrahedra: at the wall, or inside the layer `outer`.
-fn layer_at(
-    tets: &[[u32; 4]],
-    wall: &rustc_hash::FxHashSet<[u32; 3]>,
-    outer: Option<&LayerCell>,
-) -> Option<LayerCell> {
+fn layer_at(tets: &[[u32; 4]], wall: &rustc_hash::FxHashSet<[u32; 3]>, outer: Option<&LayerCell>) -> Option<LayerCell> {
     let fits = |cell: &LayerCell| match outer {
         Some(outer) => outer.tets == cell.tets && key(outer.top) == key(cell.base) && outer.apex() == cell.apex(),
         None => wall.contains(&key(cell.base)),

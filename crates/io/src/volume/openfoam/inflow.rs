@@ -1,7 +1,6 @@
 //! Inlets: conditions of the velocity, and the files with their flow rates or velocities in time.
 
 use super::boundary::{Boundary, FoamPatch};
-use super::head;
 use super::profile::{Disc, InletFaces, Velocities};
 use crate::file::AtomicFolder;
 use crate::flow::{Flow, Profile, Role, Transient, Waveform};
@@ -101,13 +100,13 @@ fn write_velocities(
     });
     let place = format!("{VELOCITIES}/{}", inlet.name);
     let points = vectors(faces.centres.iter().map(|centre| centre.coords));
-    folder.put(&format!("{place}/points"), (head::text("vectorField", "points") + &points).as_bytes())?;
+    folder.put(&format!("{place}/points"), points.as_bytes())?;
     let velocities = Velocities::new(faces, &disc, flow, waveform, mean);
     let times = flow.transient.as_ref().map_or_else(|| vec![0.0], |transient| times(transient, waveform, flow.profile));
     for time in times {
         let factor = flow.transient.as_ref().map_or(1.0, |transient| ramp(time, transient));
         let values = vectors(velocities.at(time).map(|velocity| velocity * factor));
-        folder.put(&format!("{place}/{time}/U"), (head::text("vectorField", "U") + &values).as_bytes())?;
+        folder.put(&format!("{place}/{time}/U"), values.as_bytes())?;
     }
     Ok(())
 }

@@ -62,7 +62,8 @@ impl CellFaces {
     /// may have any number of faces.
     pub(super) fn of(part: &PartFaces, cells: Option<&Cells>) -> Self {
         let Some(cells) = cells else {
-            let inner = part.inner.iter().map(|face| Inner { cells: face.tets, face: Polygon::triangle(face.vertices) });
+            let inner =
+                part.inner.iter().map(|face| Inner { cells: face.tets, face: Polygon::triangle(face.vertices) });
             let outer = part.outer.iter().map(|face| Outer {
                 patch: face.patch,
                 cell: face.tet,

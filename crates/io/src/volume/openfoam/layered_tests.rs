@@ -63,8 +63,7 @@ fn pulse() -> Waveform {
 fn layers_are_prisms_with_quadrilaterals_between_them_and_on_caps() {
     let folder = written(Flow::new(1.0, 1.0));
     let mesh = folder.path().join("a.foam/constant/polyMesh");
-    let [faces, owner, neighbour] =
-        ["faces", "owner", "neighbour"].map(|name| super::tests::lists(&mesh.join(name)));
+    let [faces, owner, neighbour] = ["faces", "owner", "neighbour"].map(|name| super::tests::lists(&mesh.join(name)));
     let (starts, corners) = (&faces[0], &faces[1]);
     assert_eq!(*starts.last().unwrap() as usize, corners.len());
     let all: Vec<&[u32]> = starts.windows(2).map(|two| &corners[two[0] as usize..two[1] as usize]).collect();
@@ -104,10 +103,7 @@ fn flow_in_time_has_a_ramp_a_table_and_final_solvers() {
     let outlet = CapFlow::default().flow(2e-3).outlet(rcr);
     let flow = flow_with([(2, inlet), (3, outlet)]).transient(Some(Transient::new(1.0).periods(2).outputs(10)));
     let folder = written(flow);
-    assert_eq!(
-        text(&folder, "constant/inflow/inlet"),
-        "(\n    (0 1e-3)\n    (0.25 3e-3)\n    (1 1e-3)\n)\n"
-    );
+    assert_eq!(text(&folder, "constant/inflow/inlet"), "(\n    (0 1e-3)\n    (0.25 3e-3)\n    (1 1e-3)\n)\n");
     let velocity = text(&folder, "0/U");
     for part in ["halfCosineRamp; start 0; duration 1e-1", "outOfBounds repeat; file \"<constant>/inflow/inlet\""] {
         assert!(velocity.contains(part), "{velocity}");
@@ -145,8 +141,8 @@ fn a_profile_is_written_as_velocities_of_the_faces() {
     let folder = written(flow.clone().transient(Some(Transient::new(1.0).periods(1))));
     assert!(text(&folder, "0/U").contains("timeVaryingMappedFixedValue"));
     let points = text(&folder, "constant/boundaryData/inlet/points");
-    assert!(points.contains("\n8\n(\n"), "{points}");
-    assert!(text(&folder, "constant/boundaryData/inlet/0.25/U").contains("\n8\n(\n"));
+    assert!(points.starts_with("8\n(\n"), "{points}");
+    assert!(text(&folder, "constant/boundaryData/inlet/0.25/U").starts_with("8\n(\n"));
     // A new run replaces the files of the old one.
     let path = folder.path().join("a.foam");
     let notes = MeshNotes { flow: Some(flow), ..MeshNotes::default() };

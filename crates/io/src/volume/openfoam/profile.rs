@@ -22,11 +22,7 @@ pub(super) struct InletFaces {
 
 impl InletFaces {
     /// Faces of all inlets, by patch.
-    pub(super) fn of(
-        mesh: &dyn MeshSource,
-        faces: &Faces,
-        cells: Option<&Cells>,
-    ) -> io::Result<BTreeMap<i32, Self>> {
+    pub(super) fn of(mesh: &dyn MeshSource, faces: &Faces, cells: Option<&Cells>) -> io::Result<BTreeMap<i32, Self>> {
         let is_inlet = |id: i32| mesh.patches().iter().any(|patch| patch.id == id && Role::of(patch) == Role::Inlet);
         let mut found: Vec<(i32, Vec<u32>)> = Vec::new();
         faces.each_with(

@@ -4,10 +4,10 @@ use super::head;
 use super::rules::Settings;
 use crate::flow::{Flow, Transient};
 
-/// Maximum Courant number. Two outer correctors per time step allow more than 1.
+/// Maximum Courant number. Three outer correctors per time step allow more than 1.
 const COURANT: f64 = 2.0;
-/// Minimum number of time steps per period, and in the first step per period.
-const STEPS: [f64; 2] = [200.0, 10_000.0];
+/// Minimum number of time steps per period, and number of first steps that would fill it.
+const STEPS: [f64; 2] = [400.0, 10_000.0];
 
 pub(super) fn control(flow: &Flow) -> String {
     let head = head::text("dictionary", "system/controlDict");
@@ -59,7 +59,7 @@ pub(super) fn solution(flow: &Flow, settings: &Settings) -> String {
         text += &solver("U", &format!("{of_velocity}{usual}"));
         text += &solver("UFinal", "        $U;\n        relTol          0;\n");
         text += "}\n\nPIMPLE\n{\n    // Outer correctors repeat a time step, so that the Courant number can exceed 1.\n    \
-                 nOuterCorrectors 2;\n    nCorrectors     2;\n";
+                 nOuterCorrectors 3;\n    nCorrectors     1;\n";
         text += &format!("    nNonOrthogonalCorrectors {correctors};\n}}\n\n");
         text += "relaxationFactors\n{\n    equations       { \".*\" 1; }\n}\n";
         return text;
