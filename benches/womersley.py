@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Womersley flow in a straight tube by pimpleFoam, against the analytic solution.
 
-usage: womersley.py [--anastomesh PROGRAM] [--rho 6] [--layers N] [--case FOLDER]
+usage: womersley.py [--anastomesh PROGRAM] [--rho 8] [--layers N] [--case FOLDER]
 needs: OpenFOAM (v1912 or later of openfoam.com) and numpy
 
 The tube has radius 5 mm and length 30 mm, the fluid is blood, and the flow rate 3e-6 (1 + 0.9 sin 2 pi t) m3/s of period
@@ -100,7 +100,7 @@ def compare(case):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--anastomesh", default="anastomesh")
-    parser.add_argument("--rho", type=float, default=6)
+    parser.add_argument("--rho", type=float, default=8)
     parser.add_argument("--layers", type=int)
     parser.add_argument("--case", help="a finished case instead of a new one")
     args = parser.parse_args()

@@ -63,6 +63,9 @@ impl Figures {
         cells: Option<&Cells>,
     ) -> io::Result<Self> {
         let tets = mesh.tets(part)?.tets;
+        if tets.is_empty() {
+            return Ok(Self::default());
+        }
         let corners = mesh.corners_of(&tets)?;
         let end = first + tets.len() as u32;
         let cell_of = |tet: u32| cells.map_or(tet, |cells| cells.of_tet(tet));
