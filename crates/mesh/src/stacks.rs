@@ -17,6 +17,7 @@
 
 use crate::source::{FacePiece, MeshSource};
 use crate::{WALL, face_key};
+use rustc_hash::FxHashSet;
 use std::io;
 
 /// Minimum fraction of the wall triangles in the first parts that begin a stack. A mesh with layers has nearly all, a
@@ -148,7 +149,7 @@ fn wall_of<'a>(boundary: &'a FacePiece) -> impl Iterator<Item = [u32; 3]> + 'a {
 ///
 /// Consecutive parts can be joined to one, but a part that begins within a stack loses it.
 pub fn in_part(tets: &[[u32; 4]], boundary: &FacePiece) -> (Vec<(usize, LayerCell)>, usize) {
-    let wall: rustc_hash::FxHashSet<[u32; 3]> = wall_of(boundary).map(face_key).collect();
+    let wall: FxHashSet<[u32; 3]> = wall_of(boundary).map(face_key).collect();
     let mut cells = Vec::new();
     let (mut at, mut stacks) = (0, 0);
     while at < tets.len() {
@@ -166,10 +167,12 @@ pub fn in_part(tets: &[[u32; 4]], boundary: &FacePiece) -> (Vec<(usize, LayerCel
 }
 
 /// Layer that begins with the first of these tetrahedra: at the wall, or inside the layer `outer`.
-fn layer_at(tets: &[[u32; 4]], wall: &rustc_hash::FxHashSet<[u32; 3]>, outer: Option<&LayerCell>) -> Option<LayerCell> {
+fn layer_at(tets: &[[u32; 4]], wall: &FxHashSet<[u32; 3]>, outer: Option<&LayerCell>) -> Option<LayerCell> {
     let fits = |cell: &LayerCell| match outer {
-        Some(outer) => outer.tets == cell.tets && key(outer.top) == key(cell.base) && outer.apex() == cell.apex(),
-        None => wall.contains(&key(cell.base)),
+        Some(outer) => {
+            outer.tets == cell.tets && face_key(outer.top) == face_key(cell.base) && outer.apex() == cell.apex()
+        }
+        None => wall.contains(&face_key(cell.base)),
     };
     if let Some(cell) = [false, true].into_iter().find_map(|turned| prism(tets, turned)).filter(fits) {
         return Some(cell);
@@ -177,13 +180,10 @@ fn layer_at(tets: &[[u32; 4]], wall: &rustc_hash::FxHashSet<[u32; 3]>, outer: Op
     // The two tetrahedra of a pyramid do not show which vertex is the apex. Only the next layer does.
     let continues = |cell: &LayerCell| {
         let inner = &tets[2..];
-        outer.is_some() || pyramids(inner).any(|next| key(next.base) == key(cell.top) && next.apex() == cell.apex())
+        outer.is_some()
+            || pyramids(inner).any(|next| face_key(next.base) == face_key(cell.top) && next.apex() == cell.apex())
     };
     pyramids(tets).find(|cell| fits(cell) && continues(cell))
-}
-
-fn key(face: [u32; 3]) -> [u32; 3] {
-    face_key(face)
 }
 
 /// Tetrahedron of a prism that is seen from outside as its sorted vertices, or turned.

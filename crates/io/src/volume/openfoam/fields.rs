@@ -5,6 +5,7 @@ use super::outlets::Outlets;
 use super::rules::Settings;
 use super::{head, inflow};
 use crate::flow::{Flow, Role};
+use std::fmt::Write;
 
 pub(super) fn velocity(boundary: &Boundary, flow: &Flow) -> String {
     let mut text = head::text("volVectorField", "0/U");
@@ -25,7 +26,7 @@ pub(super) fn pressure(boundary: &Boundary, flow: &Flow, settings: &Settings) ->
     let mut text = head::text("volScalarField", "0/p");
     text += "// Pressure by density.\n";
     text += &outlets.definition(flow.viscosity / flow.density, settings.relaxation[0]);
-    text += &format!("dimensions      [0 2 -2 0 0 0 0];\ninternalField   uniform {:e};\n\n", outlets.start());
+    let _ = write!(text, "dimensions      [0 2 -2 0 0 0 0];\ninternalField   uniform {:e};\n\n", outlets.start());
     text += "boundaryField\n{\n";
     text += &outlets.entries();
     text += &per_name(boundary, Role::Inlet, "type zeroGradient;");

@@ -106,13 +106,17 @@ impl<'a> Velocities<'a> {
         let areas: Vec<f64> = faces.areas.iter().map(|area| area.dot(&disc.normal)).collect();
         let mut steady: Vec<f64> = shares.iter().map(|&share| poiseuille(share)).collect();
         let rate: f64 = steady.iter().zip(&areas).map(|(speed, area)| speed * area).sum();
-        steady.iter_mut().for_each(|speed| *speed /= rate);
+        if rate > 0.0 {
+            steady.iter_mut().for_each(|speed| *speed /= rate);
+        }
         let nu = flow.viscosity / flow.density;
         let of_harmonic = |harmonic: Harmonic| {
             let alpha = disc.radius * (harmonic.frequency / nu).sqrt();
             let mut speeds: Vec<Complex<f64>> = shares.iter().map(|&share| womersley(alpha, share)).collect();
             let rate: Complex<f64> = speeds.iter().zip(&areas).map(|(speed, area)| speed * area).sum();
-            speeds.iter_mut().for_each(|speed| *speed /= rate);
+            if rate.norm() > 0.0 {
+                speeds.iter_mut().for_each(|speed| *speed /= rate);
+            }
             (harmonic, speeds)
         };
         let harmonics = match (flow.profile, waveform) {

@@ -3,6 +3,7 @@
 use super::head;
 use super::rules::Settings;
 use crate::flow::{Flow, Transient};
+use std::fmt::Write;
 
 /// Maximum Courant number. Three outer correctors per time step allow more than 1.
 const COURANT: f64 = 2.0;
@@ -60,14 +61,15 @@ pub(super) fn solution(flow: &Flow, settings: &Settings) -> String {
         text += &solver("UFinal", "        $U;\n        relTol          0;\n");
         text += "}\n\nPIMPLE\n{\n    // Outer correctors repeat a time step, so that the Courant number can exceed 1.\n    \
                  nOuterCorrectors 3;\n    nCorrectors     1;\n";
-        text += &format!("    nNonOrthogonalCorrectors {correctors};\n}}\n\n");
+        let _ = write!(text, "    nNonOrthogonalCorrectors {correctors};\n}}\n\n");
         text += "relaxationFactors\n{\n    equations       { \".*\" 1; }\n}\n";
         return text;
     }
     let usual = "        tolerance       1e-30;\n        relTol          0.01;\n";
     text += &solver("p", &format!("{of_pressure}{usual}"));
     text += &solver("U", &format!("{of_velocity}{usual}"));
-    text += &format!(
+    let _ = write!(
+        text,
         "}}\n\nSIMPLE\n{{\n    consistent      yes;\n    // None with outlets whose pressure follows the flow rate: they need it \
          after each solution.\n    nNonOrthogonalCorrectors {correctors};\n    residualControl\n    {{\n        p               1e-5;\n        U               \
          1e-5;\n    }}\n}}\n\n// By Reynolds number, non-orthogonality and skewness; 0.9 and 1 are the fastest.\nrelaxationFactors\n{{\n    fields          {{ p \
