@@ -259,6 +259,22 @@ fn a_case_passes_openfoams_check_and_converges_as_it_is() {
     }
 }
 
+#[test]
+fn layers_are_prisms_that_openfoam_accepts_and_converges_on() {
+    let (Some(mut check), Some(mut solve)) = (oracle::openfoam("checkMesh"), oracle::openfoam("simpleFoam")) else {
+        return;
+    };
+    let folder = folder();
+    let case = meshed(folder.path(), "layers.foam", &["--layers", "2", "--stretch", "4"]);
+    let checked = check.arg("-case").arg(&case).arg("-allTopology").output().expect("checkMesh runs");
+    let said = stdout(&checked);
+    let prisms = said.lines().find_map(|line| line.trim().strip_prefix("prisms:")).expect("a count");
+    assert!(prisms.trim().parse::<u32>().expect("a number") > 1000, "{said}");
+    assert!(said.contains("Mesh OK"), "{said}");
+    let solved = solve.arg("-case").arg(&case).output().expect("simpleFoam runs");
+    assert!(stdout(&solved).contains("SIMPLE solution converged"), "{}", stdout(&solved));
+}
+
 /// Total flux through a patch in a binary field.
 fn through(field: &[u8], patch: &str) -> f64 {
     let find = |from: usize, what: &str| {

@@ -166,10 +166,12 @@ impl Args {
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
         if to == FileKind::Mesh {
+            let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
             let options = WriteOptions::default()
                 .format(self.format.format)
                 .memory((self.memory / 4) as usize)
-                .grid(self.grid.options());
+                .grid(self.grid.options())
+                .remark(&remark as &dyn Fn(&str));
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
             return Ok(Written::Mesh { points, tets, boundary_faces: boundary });

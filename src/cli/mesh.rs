@@ -278,11 +278,13 @@ impl Args {
         self.tell_refined(&made.networks)?;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
+        let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
         let options = WriteOptions::default()
             .format(self.format.format)
             .memory((self.blocks.memory / 4) as usize)
             .grid(self.grid.options())
-            .values(data.as_ref().map(|data| data as &dyn Beside));
+            .values(data.as_ref().map(|data| data as &dyn Beside))
+            .remark(&remark as &dyn Fn(&str));
         // A cancelled pass over the blocks fails with an error.
         let failed = |e: &dyn std::fmt::Display| {
             if bars.is_cancelled() { self.stopped() } else { Failure::input(e.to_string()) }

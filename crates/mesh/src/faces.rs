@@ -173,18 +173,35 @@ impl<'a> Faces<'a> {
     /// # Errors
     /// Errors of reading the mesh or of `each`; `InvalidData` if the mesh contradicts its own counts.
     pub fn each(&self, mut each: impl FnMut(&PartFaces) -> io::Result<()>) -> io::Result<()> {
+        self.each_with(|_, _, _| Ok(()), |faces, ()| each(faces))
+    }
+
+    /// Passes on the faces of all parts, in order, each with a result of `take`. That runs on all threads, and receives
+    /// the number of the part and of its first tetrahedron.
+    ///
+    /// # Errors
+    /// Errors of reading the mesh, of `take` or of `each`; `InvalidData` if the mesh contradicts its own counts.
+    pub fn each_with<T: Send>(
+        &self,
+        take: impl Fn(u32, u32, &PartFaces) -> io::Result<T> + Sync,
+        mut each: impl FnMut(&PartFaces, T) -> io::Result<()>,
+    ) -> io::Result<()> {
         let counts = self.mesh.counts();
         let (mut sides, mut labelled) = (0, 0);
         self.mesh.each_part(
-            |part| self.of_part(part),
-            |faces| {
+            |part| {
+                let faces = self.of_part(part)?;
+                let taken = take(part, self.first[part as usize], &faces)?;
+                Ok((faces, taken))
+            },
+            |(faces, taken)| {
                 sides += 2 * faces.inner.len() + faces.outer.len();
                 labelled += faces.outer.len();
                 // Writers have announced the number of faces before.
                 if sides > 4 * counts.tets || labelled > counts.boundary {
                     return Err(miscounted());
                 }
-                each(&faces)
+                each(&faces, taken)
             },
         )?;
         if sides == 4 * counts.tets && labelled == counts.boundary { Ok(()) } else { Err(miscounted()) }

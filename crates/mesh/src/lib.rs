@@ -15,7 +15,7 @@
 //! | [`quality`], [`dihedral`] | radius ratios and dihedral angles |
 //! | [`repair`], [`facets`] | surfaces corrected; polygons with holes cut into triangles |
 //! | [`source`], [`boundary`] | meshes and boundaries that are read a part at a time |
-//! | [`adjacency`], [`faces`], [`relabel`], [`beside`] | neighbours, faces, labels, values beside a mesh |
+//! | [`adjacency`], [`faces`], [`stacks`], [`relabel`], [`beside`] | neighbours, faces, prisms of layers, labels, values beside a mesh |
 //! | [`smooth`], [`shapes`] | smoothing; spheres, tubes and other shapes |
 //! | [`geometry`], [`bits`] | predicates, intersections, distances, search trees; bits of numbers |
 //! | [`progress`], [`units`] | progress and cancellation; numbers for people |
@@ -49,6 +49,7 @@ mod setters;
 pub mod shapes;
 pub mod smooth;
 pub mod source;
+pub mod stacks;
 pub mod units;
 
 pub use bounds::{Bound, Bounds, REGULAR_DIHEDRAL};

@@ -16,6 +16,8 @@ pub struct WriteOptions<'a> {
     pub grid: GridOptions,
     /// Additional values for VTK and Gmsh files.
     pub values: Option<&'a dyn Beside>,
+    /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
+    pub remark: Option<&'a dyn Fn(&str)>,
 }
 
 anastomesh_mesh::setters!(WriteOptions<'a> {
@@ -23,6 +25,7 @@ anastomesh_mesh::setters!(WriteOptions<'a> {
     memory: impl Into<Option<usize>>,
     grid: GridOptions,
     values: impl Into<Option<&'a dyn Beside>>,
+    remark: impl Into<Option<&'a dyn Fn(&str)>>,
 });
 
 /// Options of VTK files.

@@ -81,7 +81,7 @@ pub fn write_mesh_with(
             let memory = options.memory.unwrap_or(usual.memory);
             pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
         }
-        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, progress),
+        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, options.remark.unwrap_or(&|_| ()), progress),
         MeshFormat::Npy => npy::write(path, mesh, notes, options.values, progress),
         MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
         MeshFormat::Vtu => {

@@ -1,34 +1,59 @@
-//! `OpenFOAM` cases: a folder with the mesh in `constant/polyMesh` and all dictionaries for `simpleFoam`.
+//! `OpenFOAM` cases: a folder with the mesh in `constant/polyMesh` and all dictionaries for `simpleFoam`, or for
+//! `pimpleFoam` if the flow has a time.
 
 mod boundary;
 mod case;
+mod fields;
+mod figures;
 mod head;
+mod inflow;
+mod joined;
+#[cfg(test)]
+mod layered_tests;
+mod outlets;
 mod poly_mesh;
+mod profile;
+mod rules;
+mod system;
 #[cfg(test)]
 mod tests;
 
 use super::content::MeshNotes;
 use crate::file::AtomicFolder;
-use crate::flow::Flow;
+use crate::flow::{Flow, Role};
+use anastomesh_mesh::faces::Faces;
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::stacks::Cells;
 use boundary::Boundary;
+use outlets::Outlets;
+use profile::InletFaces;
+use rules::Settings;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::io;
 use std::path::Path;
 
+/// Data of the text files.
+struct Case<'a> {
+    boundary: &'a Boundary,
+    flow: &'a Flow,
+    settings: &'a Settings,
+}
+
 /// Writer of a text file in the folder.
-type Text = fn(&Boundary, &Flow) -> String;
+type Text = fn(&Case) -> String;
 
 const TEXTS: [(&str, Text); 9] = [
-    ("constant/polyMesh/boundary", |boundary, _| case::boundary(boundary)),
-    ("constant/transportProperties", |_, flow| case::transport(flow)),
-    ("constant/turbulenceProperties", |_, _| case::turbulence()),
-    ("system/controlDict", |_, _| case::control()),
-    ("system/fvSchemes", |_, _| case::schemes()),
-    ("system/fvSolution", |_, _| case::solution()),
-    ("system/decomposeParDict", |_, _| case::decompose()),
-    ("0/U", case::velocity),
-    ("0/p", |boundary, _| case::pressure(boundary)),
+    ("constant/polyMesh/boundary", |case| case::boundary(case.boundary)),
+    ("constant/transportProperties", |case| case::transport(case.flow)),
+    ("constant/turbulenceProperties", |_| case::turbulence()),
+    ("system/controlDict", |case| system::control(case.flow)),
+    ("system/fvSchemes", |case| system::schemes(case.flow, case.settings)),
+    ("system/fvSolution", |case| system::solution(case.flow, case.settings)),
+    ("system/decomposeParDict", |_| case::decompose()),
+    ("0/U", |case| fields::velocity(case.boundary, case.flow)),
+    ("0/p", |case| fields::pressure(case.boundary, case.flow, case.settings)),
 ];
 
 /// Empty marker file that `ParaView` opens.
@@ -40,24 +65,57 @@ pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
 }
 
 fn is_ours(name: &str) -> bool {
-    name == FOR_PARAVIEW || poly_mesh::FILES.contains(&name) || TEXTS.iter().any(|(text, _)| *text == name)
+    let in_folder = |folder: &str| name.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'));
+    name == FOR_PARAVIEW
+        || poly_mesh::FILES.contains(&name)
+        || TEXTS.iter().any(|(text, _)| *text == name)
+        || in_folder(inflow::WAVEFORMS)
+        || in_folder(inflow::VELOCITIES)
 }
 
-/// Writes a case atomically. Solver results in an existing folder are an error.
+/// Writes a case atomically. Solver results in an existing folder are an error. `remark` receives each reason why the
+/// case is not expected to converge.
 ///
-/// Tetrahedra are read twice, points once, the boundary three times. Memory holds the faces between parts of the mesh,
-/// about 50 bytes each, and the position of every patch.
+/// Tetrahedra are read twice, points twice, the boundary three times. A mesh with layers is read once more. Memory holds
+/// the faces between parts of the mesh, about 50 bytes each, and the position of every patch; with layers, also a byte
+/// per face.
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
-pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
+pub(super) fn write(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    remark: &dyn Fn(&str),
+    progress: &dyn Progress,
+) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
-    let boundary = Boundary::of(mesh)?;
-    poly_mesh::write(&folder, mesh, &boundary, progress)?;
-    let flow = &notes.flow_of(mesh.patches());
+    let cells = Cells::of(mesh)?;
+    let cells = cells.as_ref();
+    let faces = Faces::of(mesh)?;
+    let boundary = Boundary::of(mesh, &faces, cells)?;
+    let figures = poly_mesh::write(&folder, mesh, &faces, cells, &boundary, progress)?;
+    let flow = &*notes.flow_of(mesh.patches());
+    let coupled = Outlets::of(&boundary, flow).are_coupled();
+    let settings = Settings::of(&figures, reynolds(&boundary, flow), coupled);
+    settings.doubts.iter().for_each(|doubt| remark(doubt));
+    let case = Case { boundary: &boundary, flow, settings: &settings };
     for (name, text) in TEXTS {
-        folder.put(name, text(&boundary, flow).as_bytes())?;
+        folder.put(name, text(&case).as_bytes())?;
     }
+    let inlets = if inflow::is_mapped(flow) { InletFaces::of(mesh, &faces, cells)? } else { BTreeMap::new() };
+    inflow::write(&folder, &boundary, flow, &inlets)?;
     folder.put(FOR_PARAVIEW, b"")?;
     folder.commit()
+}
+
+/// Highest Reynolds number of the inlets, by mean velocity and diameter; of their peak flow rate in pulsatile flow.
+fn reynolds(boundary: &Boundary, flow: &Flow) -> f64 {
+    let of_inlet = |patch: &boundary::FoamPatch| {
+        let cap = flow.at(&patch.patch);
+        let rate = flow.transient.and(cap.waveform.as_ref()).map_or(cap.flow.abs(), crate::flow::Waveform::peak);
+        let radius = patch.patch.cap.as_ref().map_or(f64::INFINITY, |cap| cap.radius);
+        2.0 * rate * flow.density / (PI * radius * flow.viscosity)
+    };
+    boundary.with_role(Role::Inlet).map(of_inlet).fold(0.0, f64::max)
 }

@@ -6,7 +6,7 @@ use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use std::fs;
 
 /// Lists of a binary file, as words.
-fn lists(path: &Path) -> Vec<Vec<u32>> {
+pub(super) fn lists(path: &Path) -> Vec<Vec<u32>> {
     let bytes = fs::read(path).unwrap();
     let mut at = bytes.windows(3).position(|w| w == b"}\n\n").unwrap() + 3;
     let mut lists = Vec::new();
@@ -81,7 +81,9 @@ fn pieces_make_no_difference() {
     let whole = written(&volume, &notes);
     for sizes in [vec![1], vec![7, 30], vec![1000]] {
         let cut = written(&InPieces { volume: &volume, sizes: &sizes }, &notes);
-        for name in poly_mesh::FILES.into_iter().chain(TEXTS.map(|(name, _)| name)) {
+        // Settings follow the figures of the faces inside parts.
+        let texts = TEXTS.map(|(name, _)| name).into_iter().filter(|name| !name.starts_with("system/fv"));
+        for name in poly_mesh::FILES.into_iter().chain(texts) {
             let read = |folder: &tempfile::TempDir| fs::read(folder.path().join("a.foam").join(name)).unwrap();
             assert!(read(&cut) == read(&whole), "{name} {sizes:?}");
         }
