@@ -30,9 +30,6 @@
 //! Features, both on by default: `cli` is the program; `woven` is the joint style of the paper
 //! ([`meshing::JointStyle`]).
 
-// Blocks with trimmed ends are used by woven joints only.
-#![cfg_attr(not(feature = "woven"), allow(dead_code, unused_imports))]
-
 mod block;
 #[cfg(feature = "cli")]
 #[doc(hidden)]

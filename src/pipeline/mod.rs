@@ -25,6 +25,8 @@ mod schedule;
 mod seen;
 mod share;
 mod sizes;
+#[cfg(feature = "woven")]
+mod smoothed;
 mod store;
 mod terminals;
 #[cfg(test)]
