@@ -103,7 +103,7 @@ pub use anastomesh_mesh::{Bound, Bounds, Point3, TetMesh, TriMesh, nalgebra};
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
 pub use complex::ComplexError;
-pub use error::{InputArray, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
+pub use error::{EdgeFaults, InputArray, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
 pub use layer::{Layers, LayersError};
 pub use layers::LayerSummary;
 pub use optimize::{Effort, OptimizeReport};
