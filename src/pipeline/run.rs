@@ -23,7 +23,7 @@ use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::check::parts::PartsCheck;
 use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::progress::{Progress, Stage, ask};
-use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::split_shared;
 use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
@@ -57,45 +57,6 @@ pub struct Stored<'a> {
     pub report: RunReport,
     /// Network that was meshed: the given one with nodes of more than three vessels split.
     pub network: Arc<Skeleton>,
-}
-
-/// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
-///
-/// ```
-/// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::meshing::{MeshPlan, mesh_network};
-/// use anastomesh::network::clean;
-///
-/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
-/// let (network, _) = clean(&file.skeleton)?;
-/// let made = mesh_network(&network, &MeshPlan::default(), &())?;
-/// assert!(made.check.is_valid(), "{}", made.check);
-/// assert_eq!(made.mesh.patches[0].name, "wall");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
-pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
-    mesh_in_memory(&Arc::new(network.clone()), plan, progress)
-}
-
-/// Meshes a shared network in memory.
-pub(crate) fn mesh_in_memory(
-    network: &Arc<Skeleton>,
-    plan: &MeshPlan,
-    progress: &dyn Progress,
-) -> Result<Meshed, RunError> {
-    let (store, clock) = (Store::in_memory(), &mut Clock::default());
-    #[cfg(feature = "woven")]
-    if plan.smooths_joints() {
-        return super::smoothed::mesh_smoothed(&store, network, plan, progress, clock);
-    }
-    let Stored { whole, expectation, check, mut report, network } =
-        mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
-    let mesh = clock.time(progress, Stage::Merge, 0, || gather(&whole))?;
-    report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report, network })
 }
 
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
@@ -141,7 +102,7 @@ pub(crate) fn mesh_shared<'a>(
     mesh_timed(store, network, plan, fits, progress, &mut Clock::default())
 }
 
-fn mesh_timed<'a>(
+pub(super) fn mesh_timed<'a>(
     store: &'a Store,
     network: &Arc<Skeleton>,
     plan: &MeshPlan,

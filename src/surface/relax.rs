@@ -105,12 +105,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
 
     /// Relaxes a surface that is good except for an inner seam: flips use the angle criterion only.
     pub(crate) fn mend(&mut self, rounds: usize) {
-        for _ in 0..rounds {
-            self.split_long();
-            self.collapse_short();
-            self.flip(Criterion::Angle);
-            self.smooth();
-        }
+        self.rounds(rounds, Criterion::Angle);
         self.flip(Criterion::Angle);
         self.project();
     }
@@ -118,13 +113,17 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// Runs rounds of split, collapse, flip and smooth, then opens crotches and runs the final passes. For whole
     /// surfaces.
     pub(crate) fn run(&mut self, rounds: usize) {
-        for _ in 0..rounds {
+        self.rounds(rounds, Criterion::Valence);
+        self.open_crotches(Self::finish);
+    }
+
+    fn rounds(&mut self, count: usize, criterion: Criterion) {
+        for _ in 0..count {
             self.split_long();
             self.collapse_short();
-            self.flip(Criterion::Valence);
+            self.flip(criterion);
             self.smooth();
         }
-        self.open_crotches(Self::finish);
     }
 
     /// Improves the worst angles and applies the final projection and chord compensation.
