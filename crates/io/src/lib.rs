@@ -20,9 +20,11 @@
 //! | [`npy`] | arrays of `NumPy`, which all three families have | |
 //! | [`faults`] | faults that formats share | |
 //!
+//! Some formats are only read, or only written.
+//!
 //! # Features
 //!
-//! None: the crate reads and writes all formats.
+//! None.
 //!
 //! # A new format
 //!
