@@ -1,8 +1,9 @@
 //! Delaunay tetrahedralization of random points, and a torus from surface to improved mesh.
 
+use anastomesh::Point3;
+use anastomesh::mesh::shapes::torus_surface;
 use anastomesh::testing::delaunay;
 use anastomesh::tet::{Effort, Interior, Plc, Tetrahedralizer};
-use anastomesh::{Point3, TriMesh};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -13,26 +14,6 @@ fn random_points(n: usize) -> Vec<Point3> {
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     (0..n).map(|_| Point3::new(coordinate(), coordinate(), coordinate())).collect()
-}
-
-fn torus(n: u32, m: u32) -> TriMesh {
-    let mut s = TriMesh::default();
-    let turn = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-    for i in 0..n {
-        for j in 0..m {
-            let (a, b) = (turn(i, n), turn(j, m));
-            let r = 2.0 + 0.7 * b.cos();
-            s.points.push(Point3::new(r * a.cos(), r * a.sin(), 0.7 * b.sin()));
-        }
-    }
-    let at = |i: u32, j: u32| (i % n) * m + j % m;
-    for i in 0..n {
-        for j in 0..m {
-            s.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-            s.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
-        }
-    }
-    s
 }
 
 fn points(c: &mut Criterion) {
@@ -49,7 +30,7 @@ fn points(c: &mut Criterion) {
 fn surface(c: &mut Criterion) {
     let mut group = c.benchmark_group("tetrahedralize");
     group.sample_size(10);
-    let s = torus(120, 42);
+    let s = torus_surface(120, 42, 0.35);
     let plc = Plc::from(&s);
     let options = Tetrahedralizer::new().effort(Effort::Fast);
     group.throughput(Throughput::Elements(s.triangles.len() as u64));

@@ -41,7 +41,7 @@ pub fn mesh_network(network: &Path, output: &Path) -> Result<(), Box<dyn Error>>
     }
     // A network that gives a valid mesh as it is is not refined.
     if made.networks.refine.is_some() {
-        noted += &format!(" --refine {iterations}");
+        noted = format!("{noted} --refine {iterations}");
     }
     write_mesh(output, &made.mesh, &made.notes(concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(), noted))?;
     match &made.defects[..] {

@@ -1,7 +1,7 @@
 //! Anastomesh turns the skeleton of a vascular network into one tetrahedral volume mesh with a labelled boundary. The
 //! skeleton is a graph: nodes are points with a radius, edges are vessels.
 //!
-//! ![A tree of 30 nodes, coloured by block](https://raw.githubusercontent.com/anastomesh/anastomesh/main/docs/tree.png)
+#![doc = include_str!("../docs/tree.html")]
 //!
 //! ```
 //! use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
@@ -27,11 +27,12 @@
 //! Loops run in the current thread pool of `rayon`; results do not depend on its size. `ARCHITECTURE.md` describes the
 //! crates and modules.
 //!
-//! Features, both on by default: `cli` is the program; `woven` is the joint style of the paper
-//! ([`meshing::JointStyle`]).
-
-// Blocks with trimmed ends are used by woven joints only.
-#![cfg_attr(not(feature = "woven"), allow(dead_code, unused_imports))]
+//! # Features
+//!
+//! | feature | default | adds |
+//! |---|---|---|
+//! | `cli` | yes | the program `anastomesh` |
+//! | `woven` | yes | joints as in the paper: [`JointStyle::Woven`](meshing::JointStyle::Woven) |
 
 mod block;
 #[cfg(feature = "cli")]

@@ -4,11 +4,15 @@ mod common;
 
 use anastomesh::Point3;
 use anastomesh::check::{CheckReport, Line, Outcome};
-use anastomesh::meshing::{JointStyle, MeshPlan, Meshed, RunReport};
+#[cfg(feature = "woven")]
+use anastomesh::meshing::{JointStyle, MeshPlan};
+use anastomesh::meshing::{Meshed, RunReport};
 use anastomesh::network::Skeleton;
 use anastomesh::skeleton::Edge;
 use anastomesh::testing::{Tube, point_tube};
-use common::{mesh, mesh_by, network, shared};
+#[cfg(feature = "woven")]
+use common::mesh_by;
+use common::{mesh, network, shared};
 
 /// Wall triangles of `subtree_289_clear` at ρ = 3 from another implementation of the method.
 const WALL_OF_BASELINE: usize = 227_134;

@@ -2,8 +2,9 @@
 
 mod common;
 
+use anastomesh::mesh::shapes::torus_surface;
 use anastomesh::testing::{Improper, self_contacts, self_intersections};
-use anastomesh::{Point3, Vec3};
+use anastomesh::{Point3, TriMesh, Vec3};
 use common::oracle::{self, Random};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -48,22 +49,7 @@ fn soup(count: u32, random: &mut Random, corner: impl Fn(&mut Random) -> Point3)
 
 /// Torus of `n` × `m` quadrilaterals, two triangles each.
 fn torus(n: u32, m: u32, tube: f64) -> Surface {
-    let mut points = Vec::new();
-    for i in 0..n {
-        for j in 0..m {
-            let (u, v) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(m));
-            let ((su, cu), (sv, cv)) = ((std::f64::consts::TAU * u).sin_cos(), (std::f64::consts::TAU * v).sin_cos());
-            points.push(Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv));
-        }
-    }
-    let id = |i: u32, j: u32| (i % n) * m + j % m;
-    let quads = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
-    let triangles = quads
-        .flat_map(|(i, j)| {
-            let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
-            [[a, b, c], [a, c, d]]
-        })
-        .collect();
+    let TriMesh { points, triangles } = torus_surface(n, m, tube);
     (points, triangles)
 }
 

@@ -3,6 +3,7 @@
 #![no_main]
 
 use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::shapes::banded_sphere;
 use anastomesh_mesh::{Point3, TriMesh};
 use anastomesh_tet::{Interior, Plc, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
@@ -10,7 +11,7 @@ use std::collections::BTreeMap;
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&mode, rest)) = bytes.split_first() else { return };
-    let mut surface = sphere(2 + u32::from(mode & 3));
+    let mut surface = banded_sphere(2 + u32::from(mode & 3));
     let (radii, flips) = rest.split_at(rest.len().min(surface.points.len()));
     for (p, &b) in surface.points.iter_mut().zip(radii) {
         // Eighths from 1/8 to 32: rounded coordinates, thin spikes, and many points in common planes.
@@ -50,30 +51,4 @@ fn flip_edge(surface: &mut TriMesh, choice: usize) {
     if !exists && c != d && seen_from_origin(&surface.points, &new) {
         (surface.triangles[first], surface.triangles[second]) = (new[0], new[1]);
     }
-}
-
-/// Returns a sphere with `rings` bands and `2 * rings` points around each.
-fn sphere(rings: u32) -> TriMesh {
-    let around = 2 * rings;
-    let mut mesh = TriMesh::default();
-    let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
-    for ring in 1..rings {
-        let (sin, cos) = angle(ring, rings).sin_cos();
-        for i in 0..around {
-            let (y, x) = angle(2 * i, around).sin_cos();
-            mesh.points.push(Point3::new(sin * x, sin * y, cos));
-        }
-    }
-    let (north, south) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
-    mesh.points.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
-    let at = |ring: u32, i: u32| (ring - 1) * around + i % around;
-    for i in 0..around {
-        mesh.triangles.push([north, at(1, i), at(1, i + 1)]);
-        mesh.triangles.push([south, at(rings - 1, i + 1), at(rings - 1, i)]);
-        for ring in 1..rings - 1 {
-            let [a, b, c, d] = [at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1)];
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
-        }
-    }
-    mesh
 }

@@ -28,15 +28,12 @@ mod template;
 mod wall;
 
 pub(crate) use buried::buried;
+pub(crate) use cluster::mesh_cluster_watched;
 pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
-pub(crate) use cluster::{cut_ends, mesh_cluster_watched};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector};
-#[cfg(test)]
-pub(crate) use connector_surface::connector_surface;
 pub use connector_surface::{ConnectorEnd, ConnectorFault, Division, EndVertex};
 pub use dump::{BlockDump, BlockInput, DumpError};
-pub use end_surface::{CutEnd, EndFault, EndSurface, StoredEnd};
-pub(crate) use end_surface::{CutPlane, cross, crossing, disc_rim};
+pub use end_surface::{EndFault, EndSurface, StoredEnd};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use faithful::Astray;
 pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
@@ -45,6 +42,15 @@ pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};
 pub use record::{Bytes, Record, Sizes, encode};
 pub(crate) use shape::{tet_ratio, triangle_ratio};
+
+#[cfg(all(test, feature = "woven"))]
+pub(crate) use connector_surface::connector_surface;
+// Parts of blocks with trimmed ends.
+#[cfg(feature = "woven")]
+pub(crate) use {
+    cluster::cut_ends,
+    end_surface::{CutEnd, CutPlane, cross, crossing, disc_rim},
+};
 
 #[cfg(test)]
 mod cluster_tests;

@@ -16,6 +16,10 @@ use anastomesh_mesh::adjacency::boundary_faces;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 
+/// Help on the input of the verbs that draw.
+pub const DRAWN: &str = "Volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), surface (.stl, .ply, .obj, .off), network (see `mesh`), or \
+     work directory of `mesh`";
+
 /// Memory of a loaded mesh per byte of its file, in bytes.
 const MEMORY_PER_BYTE: u64 = 4;
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::check::check_opened;
 use super::common::{ended, thread_pool};
 use super::exit::{Exit, Failure};
-use super::kind::{FileKind, OpenedMesh, boundary_of, left_in};
+use super::kind::{DRAWN, FileKind, OpenedMesh, boundary_of, left_in};
 use super::limits;
 use super::log;
 use super::network::NetworkArgs;
@@ -25,9 +25,7 @@ use anastomesh_skeleton::{NodeId, Skeleton};
 const CHECKED: usize = 2_000_000;
 
 #[derive(Debug, clap::Args)]
-#[command(mut_arg("network", |arg| arg.value_name("INPUT").help(
-    "Volume mesh (.vtu, .pvtu, .msh, .mesh, .ele), surface (.stl, .ply, .obj, .off), network (see `mesh`), or work directory of \
-     `mesh`")))]
+#[command(mut_arg("network", |arg| arg.value_name("INPUT").help(DRAWN)))]
 pub struct Args {
     #[command(flatten)]
     input: NetworkArgs,

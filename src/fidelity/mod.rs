@@ -7,6 +7,8 @@ mod along;
 mod axis;
 mod changes;
 mod lumen;
+#[cfg(feature = "cli")]
+mod networks;
 mod radius;
 mod spread;
 mod text;
@@ -23,6 +25,7 @@ pub use axis::{Displaced, Displacements};
 pub use changes::{Change, Changes, Repairs};
 pub use radius::{RadiusReference, SectionErrors};
 pub use spread::Spread;
+#[cfg(feature = "cli")]
 pub(crate) use text::share;
 pub use tubes::Tubes;
 
@@ -85,16 +88,6 @@ impl Fidelity {
             SectionErrors { spread: found.wall, of: RadiusReference::Given }
         };
         Ok(found)
-    }
-
-    /// Compares a network that replaces the given one, without a mesh: the volume is that of its lumen.
-    pub(crate) fn of_network(networks: Compared) -> Self {
-        let Compared { given, outline, meshed } = networks;
-        let (lumen, tubes) = (lumen_of(outline), Tubes::of(meshed));
-        let volume = lumen::volume(meshed, &tubes);
-        let axis = Displacements::of(given, meshed, &tubes);
-        let radius = SectionErrors { spread: radius::change(given, &tubes), of: RadiusReference::Network };
-        Self { axis, radius, lumen, volume, wall: Spread::default() }
     }
 
     /// True if vessels were moved (by a refinement): the wall's distance from the given tubes is then no error.

@@ -15,6 +15,7 @@ mod estimate;
 mod flow_error;
 mod flow_plan;
 mod forecast;
+mod in_memory;
 mod inlets;
 mod make;
 mod once;
@@ -28,6 +29,8 @@ mod schedule;
 mod seen;
 mod share;
 mod sizes;
+#[cfg(feature = "woven")]
+mod smoothed;
 mod store;
 mod terminals;
 #[cfg(test)]
@@ -45,6 +48,8 @@ pub use flow_plan::{FlowPlan, Inflow};
 #[cfg(feature = "cli")]
 pub(crate) use flow_plan::{FlowSolution, InletSite};
 pub use forecast::Forecast;
+pub(crate) use in_memory::mesh_in_memory;
+pub use in_memory::mesh_network;
 pub use inlets::{Inlet, InletReason, Inlets, NoTerminal};
 pub use once::replay;
 pub use outlets::{OutletKind, OutletPlan, OutletSplit, Reference};
@@ -52,8 +57,8 @@ pub use plan::{JointStyle, MeshPlan, PlanError};
 #[cfg(feature = "cli")]
 pub use report::named;
 pub use report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, MeshSize, Retry, RunReport, ThinBlock};
-pub use run::{Meshed, Stored, mesh_into, mesh_network};
-pub(crate) use run::{mesh_in_memory, mesh_shared};
+pub(crate) use run::mesh_shared;
+pub use run::{Meshed, Stored, mesh_into};
 pub use share::{ShareReport, make_share};
 pub use store::{Difference, Manifest, NoShard, Role, Shard, Store, StoreError};
 pub(crate) use store::{KeyMaker, fingerprint};

@@ -74,14 +74,13 @@ pub fn replay(dump: &BlockDump, watch: &Watch) -> Result<Finished, BlockError> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "woven"))]
 mod tests {
     use super::*;
     use crate::block::fixtures::{bifurcation, facing};
     use anastomesh_skeleton::FineFork;
 
     #[test]
-    #[cfg(feature = "woven")]
     fn a_dumped_block_runs_again_to_the_same_bits() {
         let params = BlockParams { shift: [0.1, 0.2, 0.3], ..BlockParams::default() };
         let input = bifurcation(11);

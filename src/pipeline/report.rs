@@ -2,6 +2,7 @@
 
 mod text;
 
+#[cfg(feature = "cli")]
 pub use text::named;
 
 use super::timing::{BlockTimes, StageTime};

@@ -11,7 +11,7 @@ use super::error::RunError;
 use super::estimate::{Estimate, TooLarge};
 use super::make::Workshop;
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{Meeting, MeshSize, RunReport};
+use super::report::{Meeting, RunReport};
 use super::rounds::RunContext;
 use super::seen::Seen;
 use super::store::Store;
@@ -19,13 +19,11 @@ use super::terminals::{self, TerminalPatches};
 use super::timing::Clock;
 use super::whole::Whole;
 use crate::partition::CutId;
-#[cfg(feature = "woven")]
-use crate::woven::Assembly;
+use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::check::parts::PartsCheck;
-use anastomesh_mesh::check::{CheckReport, Expectation, check_volume_with};
+use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::progress::{Progress, Stage, ask};
-use anastomesh_mesh::source::{MeshSource, SourceCounts, gather};
-use anastomesh_mesh::{VolumeMesh, WALL};
+use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::split_shared;
 use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
@@ -59,45 +57,6 @@ pub struct Stored<'a> {
     pub report: RunReport,
     /// Network that was meshed: the given one with nodes of more than three vessels split.
     pub network: Arc<Skeleton>,
-}
-
-/// Meshes a cleaned network in memory. Uses the current rayon pool; the result does not depend on its size.
-///
-/// ```
-/// use anastomesh::io::{NetworkOptions, read_network};
-/// use anastomesh::meshing::{MeshPlan, mesh_network};
-/// use anastomesh::network::clean;
-///
-/// let file = read_network("fixtures/tree_30.swc".as_ref(), &NetworkOptions::default())?;
-/// let (network, _) = clean(&file.skeleton)?;
-/// let made = mesh_network(&network, &MeshPlan::default(), &())?;
-/// assert!(made.check.is_valid(), "{}", made.check);
-/// assert_eq!(made.mesh.patches[0].name, "wall");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// See [`RunError`]. With `plan.keep_going`, blocks that fail are left out and listed in the report instead.
-pub fn mesh_network(network: &Skeleton, plan: &MeshPlan, progress: &dyn Progress) -> Result<Meshed, RunError> {
-    mesh_in_memory(&Arc::new(network.clone()), plan, progress)
-}
-
-/// Meshes a shared network in memory.
-pub(crate) fn mesh_in_memory(
-    network: &Arc<Skeleton>,
-    plan: &MeshPlan,
-    progress: &dyn Progress,
-) -> Result<Meshed, RunError> {
-    let (store, clock) = (Store::in_memory(), &mut Clock::default());
-    #[cfg(feature = "woven")]
-    if plan.smooths_joints() {
-        return mesh_smoothed(&store, network, plan, progress, clock);
-    }
-    let Stored { whole, expectation, check, mut report, network } =
-        mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
-    let mesh = clock.time(progress, Stage::Merge, 0, || gather(&whole))?;
-    report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report, network })
 }
 
 /// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
@@ -143,7 +102,7 @@ pub(crate) fn mesh_shared<'a>(
     mesh_timed(store, network, plan, fits, progress, &mut Clock::default())
 }
 
-fn mesh_timed<'a>(
+pub(super) fn mesh_timed<'a>(
     store: &'a Store,
     network: &Arc<Skeleton>,
     plan: &MeshPlan,
@@ -180,37 +139,9 @@ fn mesh_timed<'a>(
     }
 }
 
-/// The mesh in memory, its joints smoothed.
-#[cfg(feature = "woven")]
-fn mesh_smoothed(
-    store: &Store,
-    network: &Arc<Skeleton>,
-    plan: &MeshPlan,
-    progress: &dyn Progress,
-    clock: &mut Clock,
-) -> Result<Meshed, RunError> {
-    let job = Job::of(network, plan, store, progress, clock)?;
-    let network = Arc::clone(&job.skeleton);
-    let mut blocks = job.run(clock).build(&BTreeSet::new(), None, &|_| Ok(()))?;
-    let whole = job.numbered(&mut blocks, clock)?;
-    let (mut report, expectation) = job.described(blocks)?;
-    ask(progress)?;
-    let mut assembly = clock.time(progress, Stage::Merge, 0, || Assembly::new(&whole, whole.joint_vertices()?))?;
-    report.joints = Some(clock.time(progress, Stage::Joints, 0, || assembly.smooth(progress)));
-    ask(progress)?;
-    let labelled = clock.time(progress, Stage::Merge, 0, || assembly.label());
-    let (mesh, neighbors) = labelled.map_err(|error| RunError::Label(error.to_string()))?;
-    ask(progress)?;
-    let check = || check_volume_with(&mesh, neighbors, Some(&expectation));
-    let check = clock.time(progress, Stage::Check, 0, check);
-    report.mesh = mesh_size(&mesh)?;
-    report.stages = clock.stages();
-    Ok(Meshed { mesh, expectation, check, report, network })
-}
-
 /// Input and store of a run.
-struct Job<'a, 'b> {
-    skeleton: Arc<Skeleton>,
+pub(super) struct Job<'a, 'b> {
+    pub(super) skeleton: Arc<Skeleton>,
     overlaps: Overlaps,
     terminals: TerminalPatches,
     plan: &'b MeshPlan,
@@ -220,7 +151,7 @@ struct Job<'a, 'b> {
 }
 
 impl<'a, 'b> Job<'a, 'b> {
-    fn of(
+    pub(super) fn of(
         network: &Arc<Skeleton>,
         plan: &'b MeshPlan,
         store: &'a Store,
@@ -239,7 +170,7 @@ impl<'a, 'b> Job<'a, 'b> {
         Workshop::new(&self.skeleton, self.plan, self.store)
     }
 
-    fn run<'c>(&'c self, clock: &'c mut Clock) -> RunContext<'c> {
+    pub(super) fn run<'c>(&'c self, clock: &'c mut Clock) -> RunContext<'c> {
         RunContext { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
     }
 
@@ -247,7 +178,7 @@ impl<'a, 'b> Job<'a, 'b> {
     ///
     /// # Errors
     /// When blocks failed that may not, and when it cannot be numbered or left in its work directory.
-    fn numbered(&self, blocks: &mut Blocks, clock: &mut Clock) -> Result<Whole<'a>, RunError> {
+    pub(super) fn numbered(&self, blocks: &mut Blocks, clock: &mut Clock) -> Result<Whole<'a>, RunError> {
         let Self { skeleton, terminals, plan, store, progress, .. } = self;
         let nothing_left = blocks.clusters.iter().all(Result::is_err);
         let number = || Whole::new(store, *progress, skeleton, blocks, terminals);
@@ -267,7 +198,7 @@ impl<'a, 'b> Job<'a, 'b> {
     }
 
     /// Report of the run and expected topology.
-    fn described(self, mut blocks: Blocks) -> io::Result<(RunReport, Expectation)> {
+    pub(super) fn described(self, mut blocks: Blocks) -> io::Result<(RunReport, Expectation)> {
         let mut report = self.report.clone();
         let topology = describe_blocks(&self.skeleton, &self.shop(), &mut blocks, &mut report)?;
         let mut expectation = expectation(&self.skeleton, &blocks, &topology);
@@ -276,17 +207,6 @@ impl<'a, 'b> Job<'a, 'b> {
         }
         Ok((report, expectation))
     }
-}
-
-/// Counts a mesh, in one pass over its boundary.
-fn mesh_size(mesh: &dyn MeshSource) -> io::Result<MeshSize> {
-    let SourceCounts { points, tets, boundary } = mesh.counts();
-    let mut wall_triangles = 0;
-    mesh.each_faces(|piece| {
-        wall_triangles += piece.patches.iter().filter(|&&patch| patch == WALL).count();
-        Ok(())
-    })?;
-    Ok(MeshSize { tets, points, wall_triangles, cap_triangles: boundary - wall_triangles })
 }
 
 /// Splits nodes of high valence and looks for vessels that overlap.

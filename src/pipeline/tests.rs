@@ -438,11 +438,15 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
 
 #[test]
 #[cfg(feature = "woven")]
-fn smoothing_and_refinement_stop_as_well() {
+fn smoothing_stops_as_well() {
     let plan = MeshPlan { joint: JointStyle::Woven, ..MeshPlan::default() };
     let stops = Stops { after: 1, blocks: AtomicUsize::new(0) };
     let stopped = mesh_network(&h(12.0), &plan, &stops);
     assert!(matches!(stopped, Err(RunError::Cancelled)));
+}
+
+#[test]
+fn a_refinement_stops_as_well() {
     let refined = refine(&h(12.0), &RefineParams::default().freedom(Freedom::Grown), &StopsAfter::new(0));
     assert!(matches!(refined, Err(RefineError::Cancelled)));
 }

@@ -208,6 +208,7 @@ impl<'a> Whole<'a> {
     ///
     /// # Errors
     /// When a block cannot be read.
+    #[cfg(feature = "woven")]
     pub(crate) fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
         let mut all = Vec::with_capacity(self.plan.joined.len());
         for part in self.plan.clusters..self.plan.parts.len() as u32 {

@@ -141,12 +141,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// # Errors
     /// [`Stop`] if the watch says so.
     pub(crate) fn mend(&mut self, rounds: usize) -> Result<(), Stop> {
-        for _ in 0..rounds {
-            self.split_long();
-            self.collapse_short();
-            self.flip(Criterion::Angle);
-            self.smooth();
-        }
+        self.rounds(rounds, Criterion::Angle);
         self.flip(Criterion::Angle);
         self.project();
         self.stopped.map_or(Ok(()), Err)
@@ -158,14 +153,18 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// # Errors
     /// [`Stop`] if the watch says so.
     pub(crate) fn run(&mut self, rounds: usize) -> Result<(), Stop> {
-        for _ in 0..rounds {
-            self.split_long();
-            self.collapse_short();
-            self.flip(Criterion::Valence);
-            self.smooth();
-        }
+        self.rounds(rounds, Criterion::Valence);
         self.open_crotches(Self::finish);
         self.stopped.map_or(Ok(()), Err)
+    }
+
+    fn rounds(&mut self, count: usize, criterion: Criterion) {
+        for _ in 0..count {
+            self.split_long();
+            self.collapse_short();
+            self.flip(criterion);
+            self.smooth();
+        }
     }
 
     /// Improves the worst angles and applies the final projection and chord compensation.

@@ -18,6 +18,8 @@ pub use cluster::mesh_trimmed;
 pub use joints::JointReport;
 
 #[cfg(test)]
+mod fixtures;
+#[cfg(test)]
 mod joint_tests;
 #[cfg(test)]
 mod tests;

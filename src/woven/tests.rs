@@ -1,10 +1,10 @@
 //! Tests of trimmed clusters and the connectors between them.
 
 use super::cluster::mesh_trimmed;
+use super::fixtures::lattice_tube;
 use super::trim::{TrimOptions, trim};
 use crate::block::fixtures::{
-    assert_mesh, assert_taken_over, bifurcation, facing, flipped, lattice_tube, neighbours, straight, wall_angle,
-    worst_ratio,
+    assert_mesh, assert_taken_over, bifurcation, facing, flipped, neighbours, straight, wall_angle, worst_ratio,
 };
 use crate::block::{BlockParams, ConnectorEnd, CutEnd, Division, connector_surface, mesh_cluster, mesh_connector};
 use crate::partition::{Cluster, ClusterId, CutId};

@@ -1,9 +1,8 @@
 //! Tests of trimming on tubes filled with a lattice.
 
+use super::fixtures::{lattice_tube, lattice_tubes};
 use super::trim::{TrimOptions, Trimmed, trim};
-use crate::block::fixtures::{
-    assert_mesh, boundary, closed_euler, direction, jitter, lattice_tube, lattice_tubes, neighbours, section,
-};
+use crate::block::fixtures::{assert_mesh, boundary, closed_euler, direction, jitter, neighbours, section};
 use crate::block::{CutEnd, FlattenFailure, tet_ratio, triangle_ratio};
 use crate::partition::CutId;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};

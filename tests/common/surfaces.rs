@@ -3,6 +3,7 @@
 use anastomesh::Point3;
 use anastomesh::TriMesh;
 use anastomesh::io::write_surface;
+use anastomesh::mesh::shapes::banded_sphere;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
@@ -24,28 +25,7 @@ pub fn cube() -> TriMesh {
 
 /// Sphere with this number of rings.
 pub fn sphere(rings: u32) -> TriMesh {
-    let around = 2 * rings;
-    let mut mesh = TriMesh::default();
-    let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
-    for ring in 1..rings {
-        let (sin, cos) = angle(ring, rings).sin_cos();
-        for i in 0..around {
-            let (y, x) = angle(2 * i, around).sin_cos();
-            mesh.points.push(Point3::new(sin * x, sin * y, cos));
-        }
-    }
-    let (north, south) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
-    mesh.points.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
-    let at = |ring: u32, i: u32| (ring - 1) * around + i % around;
-    for i in 0..around {
-        mesh.triangles.push([north, at(1, i), at(1, i + 1)]);
-        mesh.triangles.push([south, at(rings - 1, i + 1), at(rings - 1, i)]);
-        for ring in 1..rings - 1 {
-            let [a, b, c, d] = [at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1)];
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
-        }
-    }
-    mesh
+    banded_sphere(rings)
 }
 
 pub fn save(folder: &TempDir, name: &str, mesh: &TriMesh) -> PathBuf {

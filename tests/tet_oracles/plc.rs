@@ -2,8 +2,9 @@
 
 use super::tetgen::{points_section, volume};
 use super::{recorded, tetgen};
+use anastomesh::mesh::shapes::torus_surface;
 use anastomesh::tet::{InputKind, Interior, Plc, Tetrahedralizer};
-use anastomesh::{Point3, Vec3};
+use anastomesh::{Point3, TriMesh, Vec3};
 use std::fmt::Write as _;
 
 const FILE: &str = "plc.txt";
@@ -74,15 +75,8 @@ fn add_box(plc: &mut Plc, low: Point3, size: Vec3) {
 
 /// Torus of `n` × `m` quadrilaterals around an axis, its tube along a unit circle.
 fn add_torus(plc: &mut Plc, [n, m]: [u32; 2], tube: f64, place: impl Fn(Point3) -> Point3) {
-    let turn = |i: u32, n: u32| (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos();
-    let at = |k: u32| {
-        let ((su, cu), (sv, cv)) = (turn(k / m, n), turn(k % m, m));
-        place(Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv))
-    };
-    let id = |i: u32, j: u32| (i % n) * m + j % m;
-    let quads = (0..n).flat_map(|i| (0..m).map(move |j| [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]));
-    let triangles: Vec<[u32; 3]> = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    add(plc, &(0..n * m).map(at).collect::<Vec<_>>(), &triangles);
+    let TriMesh { points, triangles } = torus_surface(n, m, tube);
+    add(plc, &points.into_iter().map(place).collect::<Vec<_>>(), &triangles);
 }
 
 /// Row of boxes with shared walls.

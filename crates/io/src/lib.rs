@@ -11,17 +11,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! | module | files |
-//! |---|---|
-//! | [`network`] | skeletons of vascular networks |
-//! | [`surface`] | triangle surfaces, and boundaries of meshes |
-//! | [`volume`] | tetrahedral meshes with labelled boundaries, and cases for solvers |
-//! | [`flow`] | flow rates and outlet models of solver cases |
-//! | [`results`] | results of flow solvers |
-//! | [`npy`] | arrays of `NumPy`, which all three families have |
-//! | [`faults`] | faults that formats share |
+//! | module | contents | formats, by the extension of the file |
+//! |---|---|---|
+//! | [`network`] | skeletons of vascular networks | `vtp`, `vtk`, `vtu`, `swc`, `csv`, `tsv`, `graphml`, `gxl`, `xml`, `net`, `pajek`, `json`, `vmv`, `am`, `in`, `edge`, `npyd` |
+//! | [`surface`] | triangle surfaces, and boundaries of meshes | `off`, `ply`, `stl`, `obj`; boundaries also `vtp`, `glb`, `3mf` |
+//! | [`volume`] | tetrahedral meshes with labelled boundaries, and cases for solvers | `vtu`, `pvtu`, `msh`, `msh2`, `mesh`, `ele`, `foam`, `svmesh`, `npyd` |
+//! | [`flow`] | flow rates and outlet models of solver cases | |
+//! | [`results`] | results of flow solvers | `foam`, `vtu` |
+//! | [`npy`] | arrays of `NumPy`, which all three families have | |
+//! | [`faults`] | faults that formats share | |
 //!
-//! The format is that of the file's extension. The crate has no features.
+//! Some formats are only read, or only written.
+//!
+//! # Features
+//!
+//! None.
 //!
 //! # A new format
 //!

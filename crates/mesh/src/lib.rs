@@ -41,6 +41,7 @@ pub mod facets;
 pub mod geometry;
 mod keep;
 mod keys;
+mod of_mesh;
 pub mod progress;
 pub mod quality;
 pub mod relabel;

@@ -1,8 +1,7 @@
 //! A mesh with merged patches.
 
-use super::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
-use super::{Patch, VolumeMesh};
-use crate::geometry::Point3;
+use super::Patch;
+use super::source::{FacePiece, LabelPiece, MeshSource};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
@@ -32,24 +31,10 @@ impl<'a> Relabelled<'a> {
 }
 
 impl MeshSource for Relabelled<'_> {
-    fn counts(&self) -> SourceCounts {
-        self.mesh.counts()
-    }
+    crate::of_mesh!(counts, parts, points, tets, tet_labels, points_of);
 
     fn patches(&self) -> &[Patch] {
         &self.patches
-    }
-
-    fn parts(&self) -> u32 {
-        self.mesh.parts()
-    }
-
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.mesh.points(part)
-    }
-
-    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.mesh.tets(part)
     }
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
@@ -57,27 +42,16 @@ impl MeshSource for Relabelled<'_> {
         Ok(FacePiece { faces, patches: self.relabel(patches), blocks })
     }
 
-    fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
-        self.mesh.tet_labels(part)
-    }
-
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let LabelPiece { count, patches, blocks } = self.mesh.face_labels(part)?;
         Ok(LabelPiece { count, patches: self.relabel(patches), blocks })
-    }
-
-    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
-        self.mesh.points_of(ids)
-    }
-
-    fn whole(&self) -> Option<&VolumeMesh> {
-        None
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::VolumeMesh;
     use crate::source::gather;
 
     #[test]

@@ -85,6 +85,46 @@ pub fn sphere_surface(level: usize) -> TriMesh {
     TriMesh { points, triangles }
 }
 
+/// Unit sphere with `rings` bands and `2 · rings` points around each.
+pub fn banded_sphere(rings: u32) -> TriMesh {
+    let around = 2 * rings;
+    let mut mesh = TriMesh::default();
+    let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
+    for ring in 1..rings {
+        let (sin, cos) = angle(ring, rings).sin_cos();
+        for i in 0..around {
+            let (y, x) = angle(2 * i, around).sin_cos();
+            mesh.points.push(Point3::new(sin * x, sin * y, cos));
+        }
+    }
+    let (north, south) = (mesh.points.len() as u32, mesh.points.len() as u32 + 1);
+    mesh.points.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
+    let at = |ring: u32, i: u32| (ring - 1) * around + i % around;
+    for i in 0..around {
+        mesh.triangles.push([north, at(1, i), at(1, i + 1)]);
+        mesh.triangles.push([south, at(rings - 1, i + 1), at(rings - 1, i)]);
+        for ring in 1..rings - 1 {
+            let [a, b, c, d] = [at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1)];
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
+}
+
+/// Torus around z: a tube of this radius along the unit circle, with `n` points along it and `m` around it.
+pub fn torus_surface(n: u32, m: u32, tube: f64) -> TriMesh {
+    let angle = |part: u32, of: u32| (std::f64::consts::TAU * f64::from(part) / f64::from(of)).sin_cos();
+    let at = |i: u32, j: u32| {
+        let ((su, cu), (sv, cv)) = (angle(i, n), angle(j, m));
+        Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv)
+    };
+    let id = |i: u32, j: u32| (i % n) * m + j % m;
+    let cells = || (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
+    let quads = cells().map(|(i, j)| [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
+    let triangles = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriMesh { points: cells().map(|(i, j)| at(i, j)).collect(), triangles }
+}
+
 /// Solid tube of radius 1 and height `layers · step`: a disc of hexagonal rings swept along z. It has `rings` rings of
 /// vertices around the axis, with `6 · ring` vertices each.
 pub fn tube_lattice(rings: u32, layers: u32, step: f64) -> TetMesh {

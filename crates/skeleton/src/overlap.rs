@@ -278,17 +278,9 @@ fn t_range(polygon: &[[f64; 2]], s: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Edge, Node};
     use super::*;
+    use crate::fixtures::network;
     use proptest::prelude::*;
-
-    fn network(points: &[[f64; 3]], radius: f64, edges: &[(u32, u32)]) -> Skeleton {
-        let node = |(i, &p): (usize, &[f64; 3])| Node { position: p.into(), radius, original: i as u32 };
-        Skeleton {
-            nodes: points.iter().enumerate().map(node).collect(),
-            edges: edges.iter().map(|&(a, b)| Edge { nodes: [NodeId(a), NodeId(b)], radii: [radius; 2] }).collect(),
-        }
-    }
 
     fn overlaps(s: &Skeleton) -> Overlaps {
         s.overlaps(&s.adjacency())

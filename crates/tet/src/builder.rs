@@ -282,12 +282,12 @@ impl Tetrahedralizer {
     /// triangle. Segments are not tested against triangles.
     ///
     /// ```
-    /// use anastomesh_tet::{TetError, Tetrahedralizer};
+    /// use anastomesh_tet::{EdgeFaults, TetError, Tetrahedralizer};
     ///
     /// let mut surface = anastomesh_mesh::shapes::sphere_surface(2);
     /// surface.triangles.pop();
     /// let fault = Tetrahedralizer::new().check(&surface);
-    /// assert!(matches!(fault, Err(TetError::Open { edges: 3, .. })), "{fault:?}");
+    /// assert!(matches!(fault, Err(TetError::Open(EdgeFaults { edges: 3, .. }))), "{fault:?}");
     /// # Ok::<(), anastomesh_tet::TetError>(())
     /// ```
     ///

@@ -54,6 +54,28 @@ fn list_as<T: PartialEq>(ids: &[T], count: usize, shown: impl Fn(&T) -> String) 
     named.join(", ") + &more
 }
 
+/// Edges with a fault, and the triangles at them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct EdgeFaults {
+    /// The first triangles with such an edge.
+    pub triangles: Vec<u32>,
+    /// Number of such triangles.
+    pub count: usize,
+    /// Ends of the first such edge.
+    pub edge: [u32; 2],
+    /// Number of such edges.
+    pub edges: usize,
+}
+
+impl EdgeFaults {
+    /// Text that counts the triangles, which are `at` the edges in a given way.
+    fn text(&self, at: &str) -> String {
+        let Self { triangles, count, edge, .. } = self;
+        format!("{} {at}: {}; one edge is {edge:?}", counted(*count, "triangle"), list(triangles, *count))
+    }
+}
+
 /// Text on duplicate triangles.
 fn twice(pairs: &[[u32; 2]], count: usize) -> String {
     match pairs {
@@ -252,61 +274,17 @@ pub enum TetError {
         expected: usize,
     },
     /// Edges that only one triangle has.
-    #[error("the surface is open: {} with an unshared edge: {}; one edge is {edge:?}", counted(*count, "triangle"), list(triangles, *count))]
-    Open {
-        /// Triangles with such an edge.
-        triangles: Vec<u32>,
-        /// Number of such triangles.
-        count: usize,
-        /// Ends of one such edge.
-        edge: [u32; 2],
-        /// Number of such edges.
-        edges: usize,
-    },
+    #[error("the surface is open: {}", .0.text("with an unshared edge"))]
+    Open(EdgeFaults),
     /// Coincident edges of different triangles whose vertices are not merged.
-    #[error(
-        "vertices are not merged: {} with an edge that coincides with another: {}; one edge is {edge:?}",
-        counted(*count, "triangle"), list(triangles, *count)
-    )]
-    NotShared {
-        /// Triangles with such an edge.
-        triangles: Vec<u32>,
-        /// Number of such triangles.
-        count: usize,
-        /// Ends of one such edge.
-        edge: [u32; 2],
-        /// Number of such edges.
-        edges: usize,
-    },
+    #[error("vertices are not merged: {}", .0.text("with an edge that coincides with another"))]
+    NotShared(EdgeFaults),
     /// Edges that more than two triangles share.
-    #[error(
-        "the surface is not manifold: {} at edges with more than two triangles: {}; one edge is {edge:?}",
-        counted(*count, "triangle"), list(triangles, *count)
-    )]
-    NotManifold {
-        /// Triangles with such an edge.
-        triangles: Vec<u32>,
-        /// Number of such triangles.
-        count: usize,
-        /// Ends of one such edge.
-        edge: [u32; 2],
-        /// Number of such edges.
-        edges: usize,
-    },
+    #[error("the surface is not manifold: {}", .0.text("at edges with more than two triangles"))]
+    NotManifold(EdgeFaults),
     /// Two triangles run through an edge in the same direction.
-    #[error(
-        "the surface is not consistently oriented: {} with a neighbour of opposite orientation: {}; one edge is {edge:?}", counted(*count, "triangle"), list(triangles, *count)
-    )]
-    NotOriented {
-        /// Triangles with such an edge.
-        triangles: Vec<u32>,
-        /// Number of such triangles.
-        count: usize,
-        /// Ends of one such edge.
-        edge: [u32; 2],
-        /// Number of such edges.
-        edges: usize,
-    },
+    #[error("the surface is not consistently oriented: {}", .0.text("with a neighbour of opposite orientation"))]
+    NotOriented(EdgeFaults),
     /// The surface encloses a negative volume: its triangles face inwards. [`Tetrahedralizer::run`](crate::Tetrahedralizer::run)
     /// accepts either orientation and does not return this error.
     #[error("the surface is oriented inwards: it encloses the volume {volume}")]

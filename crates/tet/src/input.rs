@@ -2,7 +2,7 @@
 //! (intersecting parts) are checked in [`super::contacts`].
 
 use super::certify::enclosed_volume;
-use super::error::{InputArray, NAMED, TetError};
+use super::error::{EdgeFaults, InputArray, NAMED, TetError};
 use super::plc::{InputKind, PlcRef};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
@@ -223,18 +223,22 @@ fn list_closed_edges(surface: &TriMesh, segments: &[[u32; 2]]) -> Result<Surface
     if !(open.is_empty() && crowded.is_empty() && twisted.is_empty()) {
         no_duplicate_triangles(&surface.triangles)?;
     }
-    let named = |edges: &[[u32; 2]]| edges.first().map(|&e| (triangles_at(surface, edges), e, edges.len()));
-    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&crowded) {
-        return Err(TetError::NotManifold { triangles, count, edge, edges });
+    let faults = |edges: &[[u32; 2]]| {
+        let edge = *edges.first()?;
+        let Offenders { named: triangles, count } = triangles_at(surface, edges);
+        Some(EdgeFaults { triangles, count, edge, edges: edges.len() })
+    };
+    if let Some(found) = faults(&crowded) {
+        return Err(TetError::NotManifold(found));
     }
-    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&twins(&surface.points, &open)) {
-        return Err(TetError::NotShared { triangles, count, edge, edges });
+    if let Some(found) = faults(&twins(&surface.points, &open)) {
+        return Err(TetError::NotShared(found));
     }
-    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&open) {
-        return Err(TetError::Open { triangles, count, edge, edges });
+    if let Some(found) = faults(&open) {
+        return Err(TetError::Open(found));
     }
-    if let Some((Offenders { named: triangles, count }, edge, edges)) = named(&twisted) {
-        return Err(TetError::NotOriented { triangles, count, edge, edges });
+    if let Some(found) = faults(&twisted) {
+        return Err(TetError::NotOriented(found));
     }
     if !segments.is_empty() {
         edges.extend(segments.iter().map(|e| [e[0].min(e[1]), e[0].max(e[1])]));

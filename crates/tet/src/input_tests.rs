@@ -38,17 +38,20 @@ fn corners_that_are_not_shared_are_told_from_holes() {
     let apart = soup(&s);
     let n = s.triangles.len();
     let found = error(&apart, InputKind::Closed);
-    assert!(matches!(found, TetError::NotShared { count, edges, .. } if count == n && edges == 3 * n), "{found}");
+    assert!(
+        matches!(found, TetError::NotShared(EdgeFaults { count, edges, .. }) if count == n && edges == 3 * n),
+        "{found}"
+    );
     // A difference in the last bit is a gap.
     let mut gap = apart.clone();
     gap.points.iter_mut().enumerate().for_each(|(i, p)| p.x += 0.01 * i as f64);
-    assert!(matches!(error(&gap, InputKind::Closed), TetError::Open { .. }));
+    assert!(matches!(error(&gap, InputKind::Closed), TetError::Open(_)));
     // A crack along one edge, with both zeros; only that is named.
     let mut crack = TriMesh { points: vec![], triangles: vec![[0, 2, 1], [0, 1, 3], [4, 2, 3], [2, 5, 3]] };
     for (x, y, z) in [(0., 0., 0.), (1., 0., 0.), (0., 1., 0.), (0., 0., 1.), (1., -0., 0.), (-0., 0., 0.)] {
         crack.points.push(anastomesh_mesh::geometry::Point3::new(x, y, z));
     }
-    let TetError::NotShared { triangles, edges, .. } = error(&crack, InputKind::Closed) else { panic!() };
+    let TetError::NotShared(EdgeFaults { triangles, edges, .. }) = error(&crack, InputKind::Closed) else { panic!() };
     assert_eq!((triangles, edges), (vec![0, 1, 2, 3], 8));
 }
 
@@ -69,10 +72,10 @@ impl Names for Halves {
 fn errors_are_told_in_the_numbers_of_the_caller() {
     let mut s = sphere_surface(1);
     s.triangles.truncate(4);
-    let TetError::Open { triangles, edge, .. } = error(&s, InputKind::Closed) else { panic!() };
+    let TetError::Open(EdgeFaults { triangles, edge, .. }) = error(&s, InputKind::Closed) else { panic!() };
     assert_eq!(triangles, [0, 1, 2]);
     let renamed = error(&s, InputKind::Closed).renamed(&Halves);
-    let TetError::Open { triangles, edge: elsewhere, count: 3, .. } = &renamed else { panic!("{renamed}") };
+    let TetError::Open(EdgeFaults { triangles, edge: elsewhere, count: 3, .. }) = &renamed else { panic!("{renamed}") };
     assert_eq!((triangles.as_slice(), *elsewhere), (&[10, 10, 11][..], edge.map(|v| v + 10)));
     assert!(renamed.to_string().contains("3 triangles with an unshared edge: 10, 11; one edge is"), "{renamed}");
 }

@@ -1,10 +1,13 @@
 //! Tetrahedral meshes of closed triangle surfaces and piecewise linear complexes that keep every triangle of the input.
 //!
+#![doc = include_str!("../docs/tets.html")]
+//!
 //! ```
 //! use anastomesh_tet::{Point3, Tetrahedralizer, TriMesh};
 //!
-//! let points = vec![Point3::origin(), Point3::new(1., 0., 0.), Point3::new(0., 1., 0.), Point3::new(0., 0., 1.)];
-//! let surface = TriMesh { points, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+//! let points = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]].map(Point3::from).to_vec();
+//! let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+//! let surface = TriMesh { points, triangles };
 //! let made = Tetrahedralizer::new().run(&surface)?;
 //! assert_eq!(made.faces, surface.triangles);
 //! assert_eq!(made.mesh.points[..4], surface.points);
@@ -24,7 +27,13 @@
 //!
 //! A run makes one Delaunay tetrahedralization of the points of the input, of points inside and of the corners of a box. It
 //! recovers the segments and triangles that are missing, removes the tetrahedra outside, improves the others, and certifies
-//! the result. The crate has no features. Types of meshes are those of [`anastomesh_mesh`], with its policy on [`nalgebra`].
+//! the result. Types of meshes are those of [`anastomesh_mesh`], with its policy on [`nalgebra`].
+//!
+//! # Features
+//!
+//! None.
+//!
+//! # Regions
 //!
 //! A box with a wall across it, both halves of which are filled as regions:
 //!
@@ -103,7 +112,7 @@ pub use anastomesh_mesh::{Bound, Bounds, Point3, TetMesh, TriMesh, nalgebra};
 pub use builder::{Summary, Tetrahedralization, Tetrahedralizer};
 pub use certify::{CertifyError, certify};
 pub use complex::ComplexError;
-pub use error::{InputArray, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
+pub use error::{EdgeFaults, InputArray, LayersConflict, Obstacle, SeedKind, Stuck, TetError};
 pub use layer::{Layers, LayersError};
 pub use layers::LayerSummary;
 pub use optimize::{Effort, OptimizeReport};

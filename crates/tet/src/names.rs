@@ -38,12 +38,9 @@ impl TetError {
             Self::DuplicateTriangles { pairs, .. } | Self::SelfIntersection { pairs, .. } => {
                 faces(pairs.as_flattened_mut());
             }
-            Self::Open { triangles, edge, .. }
-            | Self::NotShared { triangles, edge, .. }
-            | Self::NotManifold { triangles, edge, .. }
-            | Self::NotOriented { triangles, edge, .. } => {
-                faces(triangles);
-                points(edge);
+            Self::Open(found) | Self::NotShared(found) | Self::NotManifold(found) | Self::NotOriented(found) => {
+                faces(&mut found.triangles);
+                points(&mut found.edge);
             }
             Self::BadSeed { index, .. } => *index = names.seed(*index),
             Self::EdgeMeets { edge, obstacle } => {

@@ -1,10 +1,10 @@
 use super::complex::Complex;
-use super::error::{Obstacle, Stuck};
+use super::error::{EdgeFaults, Obstacle, Stuck};
 use super::progress::Watch;
 use super::*;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::TetQuality;
-use anastomesh_mesh::shapes::sphere_surface;
+use anastomesh_mesh::shapes::{sphere_surface, torus_surface};
 use proptest::prelude::*;
 
 /// A tube of radius 1 along z with flat caps: `n` points around, `rings` rings. Caps are fans from a centre or, without
@@ -40,26 +40,6 @@ pub(super) fn tube(n: u32, rings: u32, length: f64, centre: bool, direction: Vec
         for i in 1..n - 1 {
             s.triangles.push([at(0, 0), at(0, i + 1), at(0, i)]);
             s.triangles.push([at(rings - 1, 0), at(rings - 1, i), at(rings - 1, i + 1)]);
-        }
-    }
-    s
-}
-
-fn torus(n: u32, m: u32) -> TriMesh {
-    let mut s = TriMesh::default();
-    for i in 0..n {
-        for j in 0..m {
-            let (a, b) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(m));
-            let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::TAU);
-            let r = 2.0 + 0.7 * b.cos();
-            s.points.push(Point3::new(r * a.cos(), r * a.sin(), 0.7 * b.sin()));
-        }
-    }
-    let at = |i: u32, j: u32| (i % n) * m + j % m;
-    for i in 0..n {
-        for j in 0..m {
-            s.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-            s.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
         }
     }
     s
@@ -135,7 +115,7 @@ fn spheres_and_tori_are_filled() {
     for level in 1..3 {
         fills(&sphere_surface(level));
     }
-    fills(&torus(24, 9));
+    fills(&torus_surface(24, 9, 0.35));
 }
 
 #[test]
@@ -172,13 +152,13 @@ fn wrong_surfaces_are_typed_errors() {
     assert!(matches!(error(&flipped(s.clone())), TetError::InsideOut { .. }));
     let mut open = s.clone();
     open.triangles.pop();
-    assert!(matches!(error(&open), TetError::Open { edges: 3, .. }));
+    assert!(matches!(error(&open), TetError::Open(EdgeFaults { edges: 3, .. })));
     let mut twisted = s.clone();
     twisted.triangles[0].swap(0, 1);
-    assert!(matches!(error(&twisted), TetError::NotOriented { edges: 3, .. }));
+    assert!(matches!(error(&twisted), TetError::NotOriented(EdgeFaults { edges: 3, .. })));
     let mut crowded = s.clone();
     crowded.triangles.push([s.triangles[0][0], s.triangles[0][1], s.triangles[9][0]]);
-    assert!(matches!(error(&crowded), TetError::NotManifold { .. }));
+    assert!(matches!(error(&crowded), TetError::NotManifold(_)));
     let mut bad = s.clone();
     bad.triangles[3][1] = 10_000;
     assert!(matches!(error(&bad), TetError::BadTriangle { ref triangles, count: 1, .. } if triangles == &[3]));

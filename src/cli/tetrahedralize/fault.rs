@@ -50,10 +50,10 @@ impl Names for Asked<'_> {
 /// Position of the edge at the end of a message, or ends of the segments it names.
 fn place(error: &TetError, input: &Input) -> String {
     match error {
-        TetError::Open { edge, .. }
-        | TetError::NotShared { edge, .. }
-        | TetError::NotManifold { edge, .. }
-        | TetError::NotOriented { edge, .. } => match edge.map(|v| input.plc.surface.points.get(v as usize)) {
+        TetError::Open(found)
+        | TetError::NotShared(found)
+        | TetError::NotManifold(found)
+        | TetError::NotOriented(found) => match found.edge.map(|v| input.plc.surface.points.get(v as usize)) {
             [Some(a), Some(b)] => format!(" from {a} to {b}"),
             _ => String::new(),
         },
@@ -84,12 +84,12 @@ fn remedy(error: &TetError) -> Option<&'static str> {
     Some(match error {
         TetError::Empty { .. } | TetError::Flat => "give at least four points that are not coplanar",
         TetError::OutOfRange { .. } => "scale or shift the input",
-        TetError::DuplicatePoints { .. } | TetError::NotShared { .. } => "merge them, or give --repair",
+        TetError::DuplicatePoints { .. } | TetError::NotShared(_) => "merge them, or give --repair",
         TetError::BadTriangle { .. } | TetError::DuplicateTriangles { .. } => "remove them, or give --repair",
         TetError::FlatTriangle { .. } => "remove them in the program that wrote the surface",
-        TetError::Open { .. } => "close the holes, or give --plc to keep open facets",
-        TetError::NotManifold { .. } => "separate the sheets, or give --plc to allow interior facets",
-        TetError::NotOriented { .. } | TetError::InsideOut { .. } => "orient the triangles, or give --repair",
+        TetError::Open(_) => "close the holes, or give --plc to keep open facets",
+        TetError::NotManifold(_) => "separate the sheets, or give --plc to allow interior facets",
+        TetError::NotOriented(_) | TetError::InsideOut { .. } => "orient the triangles, or give --repair",
         TetError::SelfIntersection { .. } | TetError::EdgeMeets { .. } => {
             "separate or unite the intersecting parts in the program that wrote the surface"
         }

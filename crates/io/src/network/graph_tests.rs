@@ -106,6 +106,12 @@ fn fault(bytes: &[u8], format: NetworkFormat, from: &str, to: &str) -> String {
     }
 }
 
+/// Asserts that the message of [`fault`] contains a text.
+fn says(bytes: &[u8], format: NetworkFormat, from: &str, to: &str, what: &str) {
+    let message = fault(bytes, format, from, to);
+    assert!(message.contains(what), "{message}");
+}
+
 #[test]
 fn numbers_of_nodes_come_from_every_format_that_has_them() {
     for (name, bytes, format) in ALL {
@@ -131,10 +137,7 @@ fn numbers_of_nodes_come_from_every_format_that_has_them() {
 
 #[test]
 fn tables_say_where() {
-    let says = |from: &str, to: &str, what: &str| {
-        let message = fault(CSV, NetworkFormat::Csv, from, to);
-        assert!(message.contains(what), "{message}");
-    };
+    let says = |from: &str, to: &str, what: &str| says(CSV, NetworkFormat::Csv, from, to, what);
     says("0,0,10,2", "0,0,ten,2", "line 3: z is 'ten'");
     says("0,0,10,2", "0,0,10", "line 3, table of nodes: 3 columns where the first row has 4");
     says("0,0,10,2", "0,,10,2", "line 3: node '1' has no y");
@@ -149,10 +152,6 @@ fn tables_say_where() {
 
 #[test]
 fn graphs_say_where() {
-    let says = |bytes: &[u8], format, from: &str, to: &str, what: &str| {
-        let message = fault(bytes, format, from, to);
-        assert!(message.contains(what), "{message}");
-    };
     let xml = NetworkFormat::GraphXml;
     says(GRAPHML, xml, "target=\"n3\"", "target=\"n9\"", "the unknown node 'n9'");
     says(GRAPHML, xml, "target=\"n3\"", "aim=\"n3\"", "<edge> has no attribute 'to'");
@@ -200,10 +199,6 @@ fn faults_are_typed() {
 
 #[test]
 fn amira_and_the_solver_say_where() {
-    let says = |bytes: &[u8], format, from: &str, to: &str, what: &str| {
-        let message = fault(bytes, format, from, to);
-        assert!(message.contains(what), "{message}");
-    };
     let amira = |from: &str, to: &str, what: &str| says(AMIRA, NetworkFormat::Amira, from, to, what);
     amira("# AmiraMesh", "# Mesh", "first line");
     amira("ASCII", "BINARY-LITTLE-ENDIAN", "ASCII");

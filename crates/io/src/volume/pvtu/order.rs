@@ -1,10 +1,7 @@
 //! Order of mesh parts for pieces: along the tree of parts that share points. Pieces are ranges of this order and thus
 //! separated at few joints.
 
-use anastomesh_mesh::Patch;
-use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::source::{FacePiece, LabelPiece, MeshSource, SourceCounts, TetPiece};
-use std::borrow::Cow;
+use anastomesh_mesh::source::{FacePiece, LabelPiece, MeshSource, TetPiece};
 use std::collections::VecDeque;
 use std::io;
 
@@ -34,21 +31,7 @@ impl<'a> Reordered<'a> {
 }
 
 impl MeshSource for Reordered<'_> {
-    fn counts(&self) -> SourceCounts {
-        self.mesh.counts()
-    }
-
-    fn patches(&self) -> &[Patch] {
-        self.mesh.patches()
-    }
-
-    fn parts(&self) -> u32 {
-        self.mesh.parts()
-    }
-
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.mesh.points(part)
-    }
+    anastomesh_mesh::of_mesh!(counts, patches, parts, points, points_of);
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
         self.mesh.tets(self.part(part))
@@ -64,10 +47,6 @@ impl MeshSource for Reordered<'_> {
 
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         self.mesh.face_labels(self.part(part))
-    }
-
-    fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
-        self.mesh.points_of(ids)
     }
 }
 

@@ -4,12 +4,9 @@ use super::arrays;
 use super::file::File;
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
-use anastomesh_mesh::Patch;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::boundary::BoundarySurface;
-use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
-use std::borrow::Cow;
+use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts};
 use std::io::{self, Seek, Write};
 
 /// Writes a mesh as VTU. The bytes depend only on mesh, notes and options, not on threads or on the parts of the
@@ -86,24 +83,10 @@ impl<'a> Recounted<'a> {
 }
 
 impl MeshSource for Recounted<'_> {
+    anastomesh_mesh::of_mesh!(patches, parts, points, tets);
+
     fn counts(&self) -> SourceCounts {
         self.counts
-    }
-
-    fn patches(&self) -> &[Patch] {
-        self.mesh.patches()
-    }
-
-    fn parts(&self) -> u32 {
-        self.mesh.parts()
-    }
-
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.mesh.points(part)
-    }
-
-    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.mesh.tets(part)
     }
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
