@@ -256,7 +256,7 @@ fn facets_outside_are_left_out_with_a_note() {
 #[test]
 fn strict_refuses_what_would_be_left_out() {
     let all = cube_with_things_outside();
-    let parts = ["4 triangles lie outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
+    let parts = ["4 triangles outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");

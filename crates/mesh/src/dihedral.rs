@@ -11,7 +11,7 @@ const BINS: usize = 36;
 /// Approximate number of tetrahedra sampled. More do not change the histogram visibly.
 const ENOUGH: usize = 2_000_000;
 
-/// Histogram of dihedral angles. Very large meshes are sampled by evenly spaced parts.
+/// Histogram of dihedral angles. Large meshes are sampled in evenly spaced parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DihedralHistogram([u64; BINS]);
 

@@ -26,7 +26,7 @@
 //!
 //! [`Point3`] and [`Vec3`] are types of `nalgebra`, which is re-exported as [`nalgebra`]. A program that uses
 //! `anastomesh_mesh::nalgebra` needs no dependency of its own and no matching version. A new major version of `nalgebra` (0.x counts
-//! as major) comes only with a new major version of this crate; before 1.0, with a new minor version.
+//! as major) comes only with a new major version of this crate. Before version 1.0 of this crate, a new minor version suffices.
 
 pub mod adjacency;
 pub mod beside;

@@ -1,5 +1,7 @@
-//! A labelled mesh that is read a part at a time: what writers write and what is checked by its parts, whether the mesh
-//! stands in memory, in a file, or is put together from blocks on the way.
+//! Labelled mesh that is read part by part.
+//!
+//! Writers and the check by parts read such a mesh. It may be in memory, in a file, or assembled from blocks while it is
+//! read.
 
 use std::borrow::Cow;
 use std::io;
@@ -51,9 +53,8 @@ pub struct LabelPiece<'a> {
     pub blocks: Cow<'a, [i32]>,
 }
 
-/// A labelled mesh in parts. What of it is read part by part, in ascending order, is the mesh: its points, its tetrahedra
-/// and its boundary are numbered in this order. Parts may be read at the same time, and over and over again. A mesh that
-/// stands in memory is one part.
+/// Labelled mesh in parts. Its points, tetrahedra and boundary faces are numbered in the order of the parts. Parts may be
+/// read concurrently and repeatedly. A mesh in memory is one part.
 pub trait MeshSource: Sync {
     /// Counts over all parts.
     fn counts(&self) -> SourceCounts;
@@ -123,8 +124,10 @@ pub trait MeshSource: Sync {
     }
 }
 
-/// Passes over all parts in order. What `each` fails with ends the pass, and a mesh that does not hold as much as it says
-/// fails with `InvalidData`: writers write counts before they see what is counted. A pass may be made inside another one.
+/// Passes over all parts in order. An error of `each` ends the pass.
+///
+/// A mesh with other counts than [`MeshSource::counts`] fails with `InvalidData`, because writers write the counts first.
+/// A pass may run inside another one.
 impl dyn MeshSource + '_ {
     /// Gives all points.
     ///

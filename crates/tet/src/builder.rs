@@ -60,8 +60,8 @@ pub struct Tetrahedralization {
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty when the input has none.
     pub face_markers: Vec<i32>,
-    /// The triangle of the input that each of `faces` is, or is a piece of; empty when each is the one of the same
-    /// number, as it is where none may be split and none is left out.
+    /// Input triangle of each of `faces`, or the one that it is a piece of. Empty if each face is the input triangle of
+    /// the same index, because none was split or left out.
     pub origins: Vec<u32>,
     /// Summary of the run.
     pub summary: Summary,
@@ -83,8 +83,8 @@ pub struct Summary {
     pub reversed: usize,
     /// Triangles of the input between two tetrahedra.
     pub interior_faces: usize,
-    /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
-    /// them. There are none in a strict run.
+    /// Triangles and segments of the input that lie outside the filled region or in a hole. The mesh does not contain
+    /// them. Always empty in a strict run.
     pub left_out: LeftOut,
     /// Result of the layers, if requested.
     pub layers: Option<LayerSummary>,
@@ -277,9 +277,11 @@ impl Tetrahedralizer {
         }
     }
 
-    /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no
-    /// triangle is there twice, no two triangles meet but in common vertices and edges, and no further point lies in a
-    /// triangle. Segments are not tested against triangles.
+    /// Checks an input without meshing it.
+    ///
+    /// It makes all checks of [`Tetrahedralizer::run`], and verifies that no points coincide and no triangle is
+    /// duplicated. Triangles may intersect only in common vertices and edges, and no other point may lie in a triangle.
+    /// Segments are not tested against triangles.
     ///
     /// ```
     /// use anastomesh_tet::{TetError, Tetrahedralizer};
@@ -307,9 +309,10 @@ impl Tetrahedralizer {
         watch.report(Stage::Validate, 1, 1)
     }
 
-    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull. Success means that it has passed a certificate:
-    /// every tetrahedron is positive, tetrahedra meet face to face and fill the convex hull of the points without overlaps.
-    /// Empty spheres are not part of the certificate.
+    /// Returns the Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    ///
+    /// A returned mesh has passed a certificate: every tetrahedron is positive, and tetrahedra meet face to face. They
+    /// fill the convex hull of the points without overlaps. Empty spheres are not part of the certificate.
     ///
     /// ```
     /// use anastomesh_mesh::Point3;
@@ -336,12 +339,12 @@ impl Tetrahedralizer {
     }
 }
 
-/// Fills a closed surface that is oriented outwards, with the interior, the improvement and the effort that the
-/// tetrahedralizer has. The points of the mesh begin with those of the surface. There is no certificate: callers check what they
-/// make of the mesh.
+/// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.
+///
+/// The points of the mesh begin with those of the surface. The mesh has no certificate; callers check their final mesh.
 ///
 /// # Errors
-/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
+/// [`TetError`]; [`TetError::Cancelled`] if the watch asks to stop.
 pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<TetMesh, TetError> {
     let edges = input::validate(surface, &[], InputKind::Closed)?;
     input::outward(surface)?;

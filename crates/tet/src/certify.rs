@@ -65,7 +65,7 @@ pub enum CertifyError {
         segment: u32,
     },
     /// An item that was left out as lying outside is a face or an edge of the mesh.
-    #[error("item {id} of the {part} of the input was left out, and the mesh has it")]
+    #[error("{} {id} of the input was left out, but the mesh contains it", part.noun())]
     NotOutside {
         /// Triangle or segment.
         part: InputPart,
@@ -109,7 +109,7 @@ pub enum CertifyError {
 }
 
 impl CertifyError {
-    /// The same error of a tetrahedralization of points with other vertex numbers.
+    /// Replaces the vertex numbers in the error of a tetrahedralization of points.
     pub(super) fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
         match self {
             Self::NotPositive { tet, vertices } => Self::NotPositive { tet, vertices: vertices.map(name) },
@@ -121,9 +121,13 @@ impl CertifyError {
     }
 }
 
-/// Proves that `mesh` fills `surface`: its points begin with the surface's, bit for bit; every tetrahedron is positive
-/// by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; the boundary is the surface,
-/// triangle for triangle, with the same orientation; the volumes agree to rounding.
+/// Proves that `mesh` fills `surface`.
+///
+/// - The points of the mesh begin with those of the surface, bit for bit.
+/// - Every tetrahedron is positive by the exact predicate.
+/// - Two tetrahedra on opposite sides share each interior face.
+/// - The boundary is the surface, triangle for triangle, with the same orientation.
+/// - The volumes agree to rounding.
 ///
 /// ```
 /// use anastomesh_tet::{Tetrahedralizer, certify};
@@ -157,11 +161,15 @@ pub enum Place {
     Inside,
 }
 
-/// Proves that `mesh` keeps the triangles of `facets`: its points begin with theirs, bit for bit; every tetrahedron is
-/// positive by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; every boundary face
-/// is a triangle of `facets`, turned either way, and every triangle is a face, for [`InputKind::Closed`] on the
-/// boundary; faces between tetrahedra of different `regions` (one for each tetrahedron, or none) are triangles; the
-/// volumes of the mesh and of what its boundary encloses agree to rounding. Returns where the triangles are.
+/// Proves that `mesh` contains the triangles of `facets`, and returns their positions.
+///
+/// - The points of the mesh begin with those of `facets`, bit for bit.
+/// - Every tetrahedron is positive by the exact predicate.
+/// - Two tetrahedra on opposite sides share each interior face.
+/// - Every boundary face is a triangle of `facets`, in either orientation.
+/// - Every triangle is a face of the mesh, and a boundary face for [`InputKind::Closed`].
+/// - Faces between tetrahedra of different `regions` (one for each tetrahedron, or none) are triangles of `facets`.
+/// - The volume of the mesh and the volume enclosed by its boundary agree to rounding.
 ///
 /// # Errors
 /// The first of these that does not hold.

@@ -30,7 +30,7 @@ pub(super) fn no_contacts(surface: &TriMesh, watch: &Watch) -> Result<(), TetErr
     Err(TetError::SelfIntersection { pairs: found.named, count: found.count, complete })
 }
 
-/// Pairs of intersecting triangles; incomplete if there are very many.
+/// Pairs of intersecting triangles; incomplete if their number exceeds the limit.
 pub(super) fn contacts(surface: &TriMesh) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     // Without a watch, nothing is cancelled.

@@ -230,8 +230,8 @@ fn split_tet(mesh: &TetMesh, tet: usize) -> Option<LocalChange> {
     LocalChange::with_vertex(mesh, vec![tet], quarters, &[Point3::from(sum / 4.0)])
 }
 
-/// The smallest radius ratio of tetrahedra, with the next vertex where it is said to be; none when it is not above a bound, or
-/// one of them is not positive.
+/// Smallest radius ratio of tetrahedra, with the next vertex at `next`. `None` if it is at most `above`, or if a
+/// tetrahedron is not positive.
 fn worst(mesh: &TetMesh, tets: &[[u32; 4]], next: Option<Point3>, above: f64) -> Option<f64> {
     let corners = |tet: &[u32; 4]| tet.map(|v| mesh.points.get(v as usize).copied().or(next).unwrap_or_default());
     let mut worst = f64::INFINITY;

@@ -159,7 +159,7 @@ impl std::fmt::Display for Stuck {
 #[non_exhaustive]
 pub enum TetError {
     /// No points or no triangles.
-    #[error("nothing to tetrahedralize: {points} points, {triangles} triangles")]
+    #[error("nothing to tetrahedralize: {}, {}", counted(*points, "point"), counted(*triangles, "triangle"))]
     Empty {
         /// Number of points.
         points: usize,
@@ -241,7 +241,7 @@ pub enum TetError {
         count: usize,
     },
     /// An array that has to have a value for each of something else has not.
-    #[error("{found} {array} given, expected {expected}")]
+    #[error("the number of {array} is {found}, expected {expected}")]
     WrongLength {
         /// The array.
         array: InputArray,
@@ -398,7 +398,7 @@ pub enum TetError {
     #[error("the facets enclose no volume")]
     NothingEnclosed,
     /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
-    #[error("{count} {part} lie outside the filled region: {}", list(ids, *count))]
+    #[error("{} outside the filled region: {}", counted(*count, part.noun()), list(ids, *count))]
     Outside {
         /// Triangles or segments.
         part: InputPart,

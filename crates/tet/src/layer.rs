@@ -40,7 +40,7 @@ pub enum LayersError {
     Thickness(f64),
     /// The thinnest of them is too thin.
     #[error(
-        "the thinnest of {count} layers would have {thinnest:.1e} of the radius, at least {} is required: give fewer or thicker layers, \
+        "number of layers {count}: the thinnest would have {thinnest:.1e} of the radius, at least {} is required: give fewer or thicker layers, \
          or a growth closer to 1",
         Layers::THINNEST
     )]

@@ -154,6 +154,16 @@ pub enum InputPart {
     Segments,
 }
 
+impl InputPart {
+    /// Noun for one part, in the singular.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangle",
+            Self::Segments => "segment",
+        }
+    }
+}
+
 impl std::fmt::Display for InputPart {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(match self {

@@ -145,8 +145,8 @@ impl Inserter {
         Ok(())
     }
 
-    /// Finds a tetrahedron in conflict with `p`: one with `p` certainly in its circumsphere, one whose closure contains
-    /// `p`, or a ghost whose face sees it from outside. If `p` is a vertex, returns a tetrahedron with it. Visibility
+    /// Finds a tetrahedron in conflict with `p`. Its circumsphere certainly contains `p`, or its closure contains `p`,
+    /// or it is a ghost whose face sees `p` from outside. If `p` is a vertex, returns a tetrahedron with it. Visibility
     /// walks in regular triangulations have no cycles (Edelsbrunner 1990), so exact tests end.
     #[inline(never)]
     fn locate(&self, p: &Point3) -> u32 {

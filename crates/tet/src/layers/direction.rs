@@ -20,7 +20,7 @@ pub struct Directions {
 
 impl Directions {
     /// Computes directions from the triangles of a wall, counter-clockwise seen from outside. Each direction sees all
-    /// triangles of its vertex from behind as steeply as possible: it is the reversed centre of the smallest spherical
+    /// triangles of its vertex from behind as steeply as possible. It is the reversed centre of the smallest spherical
     /// cap that contains their normals.
     pub fn new(points: &[Point3], wall: &[[u32; 3]]) -> Self {
         let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];

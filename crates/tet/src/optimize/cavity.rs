@@ -1,5 +1,6 @@
-//! Repairs of tetrahedra that neither smoothing nor flips improve: a new vertex in a cavity around them, or the
-//! contraction of an edge to remove an inner vertex.
+//! Repairs of tetrahedra that neither smoothing nor flips improve.
+//!
+//! A repair inserts a vertex in a cavity around them, or contracts an edge to remove an inner vertex.
 
 use super::improver::CavityBuffers;
 use super::{Effort, Improver};

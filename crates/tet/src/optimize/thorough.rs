@@ -11,7 +11,7 @@ const MAX_THOROUGH_PASSES: usize = 8;
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// Radius ratio below which a tetrahedron is improved at the cost of those on needles.
 const VERY_BAD: f64 = 0.2;
-/// Maximum passes that spare very bad tetrahedra at the cost of needles.
+/// Maximum passes that improve tetrahedra below `VERY_BAD` at the cost of needles.
 const MAX_SPARING_PASSES: usize = 3;
 /// Minimum factor of improvement by moves.
 const GAIN: f64 = 1.1;
@@ -102,7 +102,7 @@ impl Improver<'_> {
         (tried, changes)
     }
 
-    /// Treats very bad tetrahedra off the needles, even if those on needles become worse.
+    /// Improves tetrahedra below `VERY_BAD` off the needles, even if those on needles become worse.
     pub(super) fn spare_others(&mut self, allowance: Allowance) {
         if allowance.is_empty() {
             return;
@@ -131,7 +131,7 @@ impl Improver<'_> {
         list.iter().map(|&(_, t)| self.strain_of(&[t])).sum()
     }
 
-    /// True if a tetrahedron off the needles is very bad, or bad beside a needle.
+    /// True if a tetrahedron off the needles is below `VERY_BAD`, or bad beside a needle.
     fn is_spared(&self, t: u32) -> bool {
         let v = self.c.verts(t);
         (self.quality[t as usize] < VERY_BAD || v.iter().any(|&v| self.allowance.has_needle(v)))

@@ -53,7 +53,7 @@ pub enum VtkLegacyError {
     },
     /// The array is shorter than announced.
     #[error(
-        "{place}: {array} needs {count} values, more than the rest of the file contains; \
+        "{place}: the number of values of {array} is {count}, more than the rest of the file contains; \
          correct the count, or copy the file again if it is truncated"
     )]
     CutShort {

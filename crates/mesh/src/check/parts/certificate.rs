@@ -1,4 +1,4 @@
-//! Certificate of one part, checked by itself.
+//! Certificate of one part, checked separately.
 
 use super::sums::{face_sum, point_sum};
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
