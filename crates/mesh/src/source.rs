@@ -229,8 +229,8 @@ impl dyn MeshSource + '_ {
         read: impl Fn(u32) -> io::Result<T> + Sync,
         mut each: impl FnMut(T) -> io::Result<()>,
     ) -> io::Result<()> {
-        for first in (0..self.parts()).step_by(AT_A_TIME as usize) {
-            let parts = first..self.parts().min(first + AT_A_TIME);
+        for first in (0..self.parts()).step_by(MAX_HELD_PARTS as usize) {
+            let parts = first..self.parts().min(first + MAX_HELD_PARTS);
             for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
                 each(piece?)?;
             }
@@ -240,7 +240,7 @@ impl dyn MeshSource + '_ {
 }
 
 /// Parts that are held at a time.
-const AT_A_TIME: u32 = 64;
+const MAX_HELD_PARTS: u32 = 64;
 
 /// A source gave something else than it had announced.
 pub fn miscounted() -> io::Error {

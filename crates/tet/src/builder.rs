@@ -187,7 +187,7 @@ impl Tetrahedralizer {
     }
 
     /// The refinement and the sizing asked for.
-    pub(super) fn wishes(&self) -> (Option<&Refinement>, &Sizing) {
+    pub(super) fn refinement_and_sizing(&self) -> (Option<&Refinement>, &Sizing) {
         (self.refinement.as_ref(), &self.sizing)
     }
 

@@ -13,7 +13,7 @@ const BAND: f64 = 1.4;
 /// Minimum distance of points of different lattices, in cubes of the coarser one. Within a lattice it is 0.87.
 const APART: f64 = 0.62;
 
-const MOST_BANDS: usize = 12;
+const MAX_BANDS: usize = 12;
 
 /// Points of body-centred cubic lattices inside the closed `surface`. Cubes have side `cell`, and points at least
 /// `clearance` from the surface, both in nearby edge lengths. Away from the surface cubes are 2, 4, ... times as large.
@@ -66,7 +66,7 @@ impl Bands {
         if !spread.is_finite() || spread < BAND * BAND.sqrt() {
             return None;
         }
-        let count = ((spread.ln() / BAND.ln()).ceil() as usize).min(MOST_BANDS);
+        let count = ((spread.ln() / BAND.ln()).ceil() as usize).min(MAX_BANDS);
         Some(Self { low, ratio: spread.powf(1.0 / count as f64), count })
     }
 

@@ -64,8 +64,8 @@ pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
         joints: vec![HeldJoint::default(); part.joints.len()],
         ..Certificate::default()
     };
-    let all_there = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
-    if !has_sound_arrays(mesh) || !all_there {
+    let are_indices_valid = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
+    if !has_sound_arrays(mesh) || !are_indices_valid {
         certificate.take([cells::finite_points(mesh)]);
         certificate.unsound = true;
         return certificate;

@@ -145,10 +145,10 @@ impl<'a> Push<'a> {
         let mut left = std::mem::take(&mut self.left);
         #[cfg(test)]
         if WIDER_FIRST.get() {
-            self.clear_wider(&mut left)?;
+            self.push_into_wider_cavities(&mut left)?;
         }
         self.clear(&mut left)?;
-        self.clear_wider(&mut left)?;
+        self.push_into_wider_cavities(&mut left)?;
         while !left.is_empty() {
             let before = left.len();
             let moved = left.iter().filter(|&&(host, v)| self.slide(host, v)).count();
@@ -156,7 +156,7 @@ impl<'a> Push<'a> {
                 break;
             }
             self.clear(&mut left)?;
-            self.clear_wider(&mut left)?;
+            self.push_into_wider_cavities(&mut left)?;
             if left.len() == before {
                 break;
             }
@@ -195,7 +195,7 @@ impl<'a> Push<'a> {
     }
 
     /// Pushes vertices without clearance into wider cavities.
-    fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
+    fn push_into_wider_cavities(&mut self, left: &mut Vec<(Host, u32)>) -> Result<(), TetError> {
         let mut level = WIDER_FROM;
         #[cfg(test)]
         if WIDER_FIRST.get() {
