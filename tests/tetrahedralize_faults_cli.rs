@@ -64,7 +64,7 @@ fn surfaces_that_bound_no_volume() {
 fn triangles_and_points_that_make_no_sense() {
     let mut flat = cube();
     flat.points.push(Point3::new(0.5, 0.0, 0.0));
-    // Edge 0 1 is split on one side only in name: a degenerate triangle fills the gap.
+    // Point 8 lies on edge 0 1. Two degenerate triangles close the gap between the edge and the point.
     flat.triangles.push([0, 8, 1]);
     flat.triangles.push([0, 1, 8]);
     refuse("a.off", off(&flat), &["--plc"], &["without area", "12"]);

@@ -35,7 +35,7 @@ pub enum CertifyError {
         vertices: [u32; 4],
     },
     /// Two tetrahedra on the same side of a face, or three at one face.
-    #[error("face {face:?} is not shared properly")]
+    #[error("face {face:?} is shared by more than two tetrahedra, or by two on the same side")]
     NotConforming {
         /// Vertices of the face.
         face: [u32; 3],

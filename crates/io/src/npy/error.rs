@@ -75,7 +75,7 @@ pub enum NpyFault {
         found: usize,
     },
     /// A row refers to a missing element.
-    #[error("row {row} refers to {index}, but {of} has {count} rows, numbered from 0")]
+    #[error("row {row} refers to {index}, but {of} has {}, numbered from 0", counted(*count, "row"))]
     Index {
         /// First such row.
         row: usize,

@@ -41,7 +41,7 @@ pub enum SurfaceFault {
         fault: FacetError,
     },
     /// A face refers to a missing point.
-    #[error("{place}: face {face} refers to point {index}, but the file has {points} points, numbered from {first}")]
+    #[error("{place}: face {face} refers to point {index}, but the file has {}, numbered from {first}", counted(*points, "point"))]
     BadIndex {
         /// The first such face.
         face: usize,
