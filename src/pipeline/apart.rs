@@ -1,5 +1,8 @@
-//! Blocks that meet. No block knows of the vessels of another one; when a web in the crotch of a fork, or the facets of a
-//! thick vessel, reach a vessel that runs close by, that is seen in the whole. The clusters are then made again, finer.
+//! Blocks that intersect each other.
+//!
+//! A block is meshed without knowledge of the vessels of other blocks. A web in the crotch of a bifurcation, or the facets
+//! of a thick vessel, may reach a vessel nearby. The check of the whole mesh finds this. The clusters are then meshed
+//! again with a finer grid.
 
 use std::collections::{BTreeMap, BTreeSet};
 

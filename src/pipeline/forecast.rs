@@ -46,12 +46,12 @@ impl Forecast {
         })
     }
 
-    /// Seconds on so many threads.
+    /// Seconds on this number of threads.
     pub fn seconds(&self, threads: usize) -> f64 {
         self.estimate.tets / TETS_PER_SECOND / threads.max(1) as f64
     }
 
-    /// Bytes of memory on so many threads.
+    /// Bytes of memory on this number of threads.
     pub fn memory(&self, threads: usize) -> u64 {
         AT_LEAST + self.estimate.largest_block_bytes * threads as u64
     }

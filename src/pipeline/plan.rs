@@ -14,8 +14,8 @@ pub enum JointStyle {
     /// as the blocks have them, which is better than what smoothing makes of them.
     #[default]
     Disc,
-    /// In two passes: clusters end as suits their walls, then a connector is woven between the ends of its two clusters
-    /// (3.2.3), and joints are smoothed (3.2.4). The whole mesh is held in memory.
+    /// Two passes with the whole mesh in memory. Clusters end in surfaces that suit their walls. Then a connector is woven
+    /// between the ends of its two clusters (section 3.2.3), and joints are smoothed (section 3.2.4).
     Woven,
     /// No vessel is cut: every component is one cluster, meshed as fine as its thinnest vessel asks for where edges do not
     /// follow the radius. For comparison.

@@ -1,5 +1,6 @@
-//! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
-//! then joined to its neighbours. A round makes the blocks that it changes; all others are carried over.
+//! All blocks of a network, with retries.
+//!
+//! A failed block is tried with other parameters, then with its cuts moved, then joined to its neighbours. A round makes the blocks that it changes; all others are carried over.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -323,8 +323,9 @@ fn expectation(skeleton: &Skeleton, blocks: &Blocks, topology: &Topology) -> Exp
     Expectation { loops, terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect() }
 }
 
-/// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
-/// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
+/// Loops of each connected piece when vessels are fused on purpose, sorted because pieces have no names.
+///
+/// They are the handles of its clusters, and the loops of the graph with clusters as nodes and connectors as edges.
 fn fused_loops(blocks: &Blocks, handles: &[i64]) -> Vec<u32> {
     let sides = || (0..blocks.partition.cuts_len() as u32).map(|cut| blocks.partition.sides_of_cut(CutId(cut)));
     let mut piece: Vec<usize> = (0..blocks.partition.clusters_len()).collect();

@@ -1,12 +1,12 @@
-//! Tips that cannot be capped where they are: put out or drawn back along their vessel until they can.
+//! Tips that cannot be capped in place. They are extended or shortened along their vessel until a cap fits.
 
 use crate::block::{BlockError, Finished, buried};
 use crate::partition::{Cluster, EndKind};
 use crate::surface::{CapError, CapFailure};
 use anastomesh_skeleton::NodeId;
 
-/// Displacements of a tip to try in turn, in its radii: outwards, where another vessel of its branch point is in the
-/// way, or back, where it ends in another vessel.
+/// Displacements of a tip to try in turn, in its radii. Positive ones move it outwards, past another vessel of its branch
+/// point. Negative ones move it back, out of another vessel.
 pub const MOVES: [f64; 8] = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 3.0];
 
 /// Minimum length of the last piece of a vessel whose tip is shortened, in radii.
@@ -50,8 +50,8 @@ pub fn is_buried(error: &BlockError) -> bool {
     matches!(error, BlockError::Cap { source: CapError::End { reason: CapFailure::Buried, .. }, .. })
 }
 
-/// The cluster with each of some tips moved by so many of its radii; none when a vessel is too short for it, or a tip lies
-/// within another vessel then.
+/// Returns the cluster with some tips moved, each by a number of its radii. `None` if a vessel is too short, or if a moved
+/// tip lies within another vessel.
 pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     let mut result = cluster.clone();
     for &(i, radii) in moves {

@@ -173,10 +173,10 @@ impl<'a> Whole<'a> {
         MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
     }
 
-    /// The first half of its check, with walls of so many bytes in memory at a time.
+    /// First half of its check. `memory` limits the bytes of walls that are in memory at a time.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     pub(crate) fn look(&self, memory: u64) -> io::Result<Looked<'_>> {
         Looked::at(self, memory as usize)
     }
@@ -244,7 +244,7 @@ impl MeshSource for Whole<'_> {
     fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
         let mut found = Vec::with_capacity(ids.len());
         while let Some(&id) = ids.get(found.len()) {
-            // Of parts that begin with the same number, all but the last have no points of their own.
+            // Of parts that begin with the same number, only the last has points of its own.
             let part = self.plan.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
             let first = self.plan.parts[part].first_point;
             let points = self.points(part as u32)?;

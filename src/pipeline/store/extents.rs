@@ -1,6 +1,6 @@
 //! Positions of records in the files of a work directory, for readers without the keys.
 //!
-//! Records are never moved nor changed: as long as the files are there the places hold, whoever adds to them.
+//! Records are never moved nor changed. Positions stay valid while the files exist, even if other runs append records.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

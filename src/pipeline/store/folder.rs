@@ -1,7 +1,7 @@
 //! Work directories: who may be in one, and what it is begun with.
 //!
-//! Every run holds the directory's lock, alone or, a shard, together with others. What is written for all of them (the
-//! manifest, the number of shards) is written under a lock that is held for as long as that takes.
+//! Every run holds the directory's lock: shards share it, other runs hold it alone. A second lock protects the files that
+//! all runs use (the manifest, the number of shards). It is held only while one of them is written.
 
 use std::fs::{self, File};
 use std::io;

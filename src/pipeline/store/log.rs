@@ -1,5 +1,7 @@
-//! Records in a file, one behind the other. A record that was not written to its end is found by its checksum and cut
-//! off when the file is opened again, so the program may be killed at any moment.
+//! Records in a file, one behind the other.
+//!
+//! A checksum detects a record that was not written completely. Such a record is cut off when the file is opened again, so
+//! the program may be killed at any moment.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -100,7 +102,7 @@ impl LogFile {
         }
         let written = write_at(&mut writer.file, start, &[&head, bytes]);
         if let Err(error) = written {
-            // What is left of the record would be cut off by the next run as well.
+            // The next run would cut off the incomplete record as well.
             let _ = writer.file.set_len(start);
             return Err(error);
         }

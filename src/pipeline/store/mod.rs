@@ -1,7 +1,7 @@
 //! Finished blocks, out of memory: kept under a key that is made of all that they depend on.
 //!
-//! Whoever asks for a block looks for its key first. So a block that does not change when others are cut anew is not
-//! meshed again, and a run that was killed goes on where it was: it does everything again and finds nearly all of it done.
+//! A block is looked up by its key before it is meshed. So a block that does not change when others are cut again is not
+//! meshed again. A run that was killed is repeated from the start, and finds nearly all blocks in the store.
 
 mod arithmetic;
 mod error;
@@ -87,11 +87,11 @@ impl Store {
         Ok(Self { place: Backend::File(log), known: Mutex::default() })
     }
 
-    /// In a work directory, with the blocks that are there. `restart` throws away those of another network, other options
+    /// Opens the store of a work directory, with its blocks. `restart` deletes the blocks of another network, other options
     /// or another version instead of refusing them.
     ///
     /// # Errors
-    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
+    /// The folder cannot be used, is in use, or belongs to another run; or its shards are not finished.
     pub fn in_folder(folder: &Path, manifest: &Manifest, restart: bool) -> Result<Self, StoreError> {
         Self::in_folder_as(Role::Alone { restart, make_missing: false }, folder, manifest)
     }
@@ -106,11 +106,11 @@ impl Store {
         Ok(Self { place: Backend::Folder(folder.to_path_buf(), others, own), known: Mutex::new(known) })
     }
 
-    /// Something that is the same for all runs in a work directory: what one of them has made, or what `make` gives, which
-    /// is then kept. `of` says what it is called, and all that it depends on. Elsewhere it is made.
+    /// Returns a value that all runs in a work directory share: the stored one, or that of `make`, which is then stored. `of`
+    /// has its name and everything that it depends on. Without a work directory, `make` is called.
     ///
     /// # Errors
-    /// That of `make`, and when the folder cannot be used.
+    /// That of `make`, or the folder cannot be used.
     pub(crate) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
         &self,
         (what, key): (&str, impl FnOnce() -> Key),
@@ -141,10 +141,10 @@ impl Store {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key.short()).copied()
     }
 
-    /// Keeps a record; one that is there already stays.
+    /// Stores a record, unless one with this key exists.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// The record cannot be written.
     pub(crate) fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let Entry::Vacant(slot) = known.entry(key.short()) else {

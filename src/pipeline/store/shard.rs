@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// One of so many shares of the blocks: `3/8` is the third of eight.
+/// One of several shares of the blocks: `3/8` is the third of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
     number: u32,
@@ -19,7 +19,7 @@ pub enum NoShard {
     /// Not two numbers.
     #[error("invalid shard '{0}': give number and count, such as 3/8")]
     Text(String),
-    /// A number that is none of these.
+    /// The shard number is 0, or above the number of shards.
     #[error("shard {0}/{1} is out of range: give 1/{1} to {1}/{1}")]
     Range(u32, u32),
     /// None, or too many.

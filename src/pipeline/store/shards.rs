@@ -1,4 +1,4 @@
-//! Shards: a share of the blocks each, with a file of records of its own, and a mark once all of them are there.
+//! Shards. Each has a share of the blocks, its own file of records, and a mark once all its records exist.
 
 use std::fs;
 use std::io;
@@ -54,7 +54,7 @@ pub(super) fn unmark(folder: &Path, shard: Shard) -> io::Result<()> {
     }
 }
 
-/// Marks a shard as done, with so many bytes of records.
+/// Marks a shard as done, with the size of its records in bytes.
 pub(super) fn mark(folder: &Path, shard: Shard, bytes: u64) -> io::Result<()> {
     write_whole(&folder.join(shard.mark()), &serde_json::to_vec(&ShardRecord { bytes })?)
 }

@@ -1,5 +1,5 @@
-//! A whole as it is left in its work directory: all that has to be known of it beside its blocks, so that it can be read without
-//! its network.
+//! Whole mesh as stored in its work directory. The record has the data besides the blocks that are needed to read the mesh
+//! without its network.
 
 use std::path::Path;
 
