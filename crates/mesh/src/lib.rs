@@ -110,7 +110,7 @@ pub struct TetMesh {
 /// counter-clockwise.
 pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// A tetrahedral mesh whose boundary is labelled: what the pipeline makes and the writers write.
+/// Tetrahedral mesh with a labelled boundary. The pipeline returns it, and the writers take it.
 ///
 /// ```
 /// use anastomesh_mesh::check::{Expectation, check_volume};

@@ -68,25 +68,25 @@ pub trait MeshSource: Sync {
     /// The points that a part adds to those of the parts before it; its tetrahedra may name others.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>>;
 
     /// The tetrahedra of a part.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>>;
 
     /// The boundary faces of a part.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>>;
 
     /// Blocks of [`tets`](Self::tets), without the tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let TetPiece { tets, blocks } = self.tets(part)?;
         Ok(LabelPiece { count: tets.len(), blocks, ..LabelPiece::default() })
@@ -95,7 +95,7 @@ pub trait MeshSource: Sync {
     /// Patches and blocks of [`boundary`](Self::boundary), without the faces.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let FacePiece { faces, patches, blocks } = self.boundary(part)?;
         Ok(LabelPiece { count: faces.len(), patches, blocks })
@@ -105,7 +105,7 @@ pub trait MeshSource: Sync {
     /// read all of them for it.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
         let mut found = Vec::with_capacity(ids.len());
         let mut before = 0;
@@ -132,7 +132,7 @@ impl dyn MeshSource + '_ {
     /// Gives all points.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_points(&self, mut each: impl FnMut(&[Point3]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.points(part);
         self.in_order(self.counts().points, read, |points| points.len(), |points| each(points))
@@ -141,7 +141,7 @@ impl dyn MeshSource + '_ {
     /// Gives all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tets(&self, each: impl FnMut(&TetPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().tets, |part| self.tets(part), |piece| piece.tets.len(), each)
     }
@@ -149,7 +149,7 @@ impl dyn MeshSource + '_ {
     /// Gives all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_faces(&self, each: impl FnMut(&FacePiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().boundary, |part| self.boundary(part), |piece| piece.faces.len(), each)
     }
@@ -157,7 +157,7 @@ impl dyn MeshSource + '_ {
     /// Gives the labels of all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tet_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().tets, |part| self.tet_labels(part), |piece| piece.count, each)
     }
@@ -165,7 +165,7 @@ impl dyn MeshSource + '_ {
     /// Gives the labels of all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_face_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
@@ -173,7 +173,7 @@ impl dyn MeshSource + '_ {
     /// Gives the corners of all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tet_corners(&self, mut each: impl FnMut(&[[Point3; 4]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.corners_of(&self.tets(part)?.tets);
         self.in_order(self.counts().tets, read, Vec::len, |corners| each(corners))
@@ -182,7 +182,7 @@ impl dyn MeshSource + '_ {
     /// Gives the corners of all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_face_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.corners_of(&self.boundary(part)?.faces);
         self.in_order(self.counts().boundary, read, Vec::len, |corners| each(corners))
@@ -220,10 +220,10 @@ impl dyn MeshSource + '_ {
         if left == 0 { Ok(()) } else { Err(miscounted()) }
     }
 
-    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    /// Reads several parts at a time on all threads, and passes the results to `each` in the order of the parts.
     ///
     /// # Errors
-    /// What `read` or `each` fails with.
+    /// Errors of `read` or `each`.
     pub fn each_part<T: Send>(
         &self,
         read: impl Fn(u32) -> io::Result<T> + Sync,
@@ -239,18 +239,18 @@ impl dyn MeshSource + '_ {
     }
 }
 
-/// Parts that are held at a time.
+/// Maximum number of parts in memory at a time.
 const MAX_HELD_PARTS: u32 = 64;
 
-/// A source gave something else than it had announced.
+/// Error of a source whose contents differ from its counts.
 pub fn miscounted() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "the mesh does not hold as much as it says")
+    io::Error::new(io::ErrorKind::InvalidData, "the contents of the mesh differ from its counts")
 }
 
-/// Puts a mesh together in memory.
+/// Assembles a mesh in memory.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// Errors of reading the mesh.
 pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
     let counts = source.counts();
     let mut volume = VolumeMesh { patches: source.patches().to_vec(), ..VolumeMesh::default() };

@@ -179,7 +179,7 @@ impl<'a> Cuttability<'a> {
         Self { adjacency, courses, rules, first, leaving }
     }
 
-    /// Part of a branch that may be cut, or the reason why there is none.
+    /// Returns the part of a branch that may be cut.
     ///
     /// # Errors
     /// [`Uncuttable`]: why the branch has no window.

@@ -1,4 +1,4 @@
-//! The library's front door.
+//! Builder of tetrahedralizations: options, runs and results.
 
 use super::certify::Place;
 use super::contacts;
@@ -20,10 +20,9 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use std::sync::Arc;
 
-/// Makes tetrahedral meshes of surfaces, of piecewise linear complexes and of points. See the module's text for an
-/// example.
+/// Tetrahedralizer of surfaces, piecewise linear complexes and points. The crate's page has an example.
 ///
-/// It can be cloned, sent to other threads and used again; runs share nothing.
+/// It can be cloned, sent to other threads and reused. Runs share no state.
 ///
 /// ```
 /// use anastomesh_tet::{Interior, Tetrahedralizer};
@@ -47,18 +46,18 @@ pub struct Tetrahedralizer {
     progress: Option<Arc<dyn Progress + Send>>,
 }
 
-/// A certified mesh, and what it took.
+/// Certified mesh, with a summary of its run.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
-    /// The mesh; its points begin with the input's, in their order and bit for bit, also those that no tetrahedron has.
+    /// The mesh. Its points begin with all points of the input, in their order and bit for bit, including unused ones.
     pub mesh: TetMesh,
-    /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
+    /// Region of each tetrahedron. Empty for a single region without an id from a seed.
     pub regions: Vec<i32>,
-    /// The triangles of the input, in their order, or their pieces where they were split, without those that are left
-    /// out (`summary.left_out`). Those on the boundary are oriented outwards; those inside as they came.
+    /// Input triangles in their order, or their pieces if they were split. Triangles of `summary.left_out` are omitted.
+    /// Boundary triangles are oriented outwards; interior ones keep their orientation.
     pub faces: Vec<[u32; 3]>,
-    /// Marker of each of `faces`; empty when the input has none.
+    /// Marker of each of `faces`; empty if the input has no markers.
     pub face_markers: Vec<i32>,
     /// Input triangle of each of `faces`, or the one that it is a piece of. Empty if each face is the input triangle of
     /// the same index, because none was split or left out.
@@ -79,9 +78,9 @@ pub struct Summary {
     pub refine: Option<RefineReport>,
     /// Number of regions.
     pub regions: usize,
-    /// Triangles of the boundary that came oriented inwards.
+    /// Boundary triangles that were oriented inwards in the input.
     pub reversed: usize,
-    /// Triangles of the input between two tetrahedra.
+    /// Input triangles between two tetrahedra.
     pub interior_faces: usize,
     /// Triangles and segments of the input that lie outside the filled region or in a hole. The mesh does not contain
     /// them. Always empty in a strict run.
@@ -108,7 +107,7 @@ impl Default for Tetrahedralizer {
 }
 
 impl Tetrahedralizer {
-    /// For closed surfaces, kept as they are, with a lattice of points inside and the mesh improved.
+    /// Default options: closed surfaces are kept, a lattice of points fills the interior, and the mesh is improved.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -142,15 +141,14 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Permission to split the triangles of the input.
+    /// Allows splitting of input triangles.
     #[must_use]
     pub fn boundary(mut self, boundary: Boundary) -> Self {
         self.boundary = boundary;
         self
     }
 
-    /// Layers of thin tetrahedra along a closed surface, in place of the same as everywhere. What else is asked for holds inside
-    /// of them.
+    /// Layers of thin tetrahedra along a closed surface. All other options apply to the region inside the layers.
     #[must_use]
     pub fn layers(mut self, layers: impl Into<Option<Layers>>) -> Self {
         self.layers = layers.into();
@@ -171,8 +169,8 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Makes triangles and segments with the outside, or holes, on all their sides an error,
-    /// [`TetError::Outside`]. Otherwise they are left out, and the summary lists them; their points stay, unused.
+    /// Fails with [`TetError::Outside`] if triangles or segments have only the outside or holes on all their sides.
+    /// Otherwise they are left out and listed in the summary. Their points remain in the mesh, unused.
     #[must_use]
     pub fn strict(mut self, strict: bool) -> Self {
         self.strict = strict;
@@ -186,7 +184,7 @@ impl Tetrahedralizer {
         self
     }
 
-    /// The refinement and the sizing asked for.
+    /// Requested refinement and sizing.
     pub(super) fn refinement_and_sizing(&self) -> (Option<&Refinement>, &Sizing) {
         (self.refinement.as_ref(), &self.sizing)
     }
@@ -195,11 +193,11 @@ impl Tetrahedralizer {
         self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
     }
 
-    /// Makes a mesh of a surface (`&TriMesh`) or a complex (`&Plc`), neither of which is copied. Success means that the mesh
-    /// has passed the certificate: each triangle of the input on or in the filled volume is a face of it.
+    /// Meshes a surface (`&TriMesh`) or a complex (`&Plc`) without copying it. A returned mesh has passed the certificate:
+    /// each input triangle on or in the filled volume is one of its faces.
     ///
     /// # Errors
-    /// [`TetError`]: what is wrong with the input, or what could not be recovered.
+    /// [`TetError`]: the fault of the input, or the part that could not be recovered.
     pub fn run<'a>(&self, input: impl Into<PlcRef<'a>>) -> Result<Tetrahedralization, TetError> {
         self.run_borrowed(input.into())
     }

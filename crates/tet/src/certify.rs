@@ -1,4 +1,4 @@
-//! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
+//! Certificate: exact conditions that make a mesh the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
 use super::plc::InputKind;
@@ -361,7 +361,8 @@ pub fn enclosed_volume(surface: &TriMesh) -> (f64, f64) {
     signed_volume(surface, |_| 1.0)
 }
 
-/// The sum over triangles of the lengths of what a term of the volume is made of, multiplied.
+/// Sum over triangles of the product of the distances of their vertices from the first point. It bounds the volume
+/// terms.
 fn spanned(surface: &TriMesh) -> f64 {
     let Some(&origin) = surface.points.first() else { return 0.0 };
     let term = |t: &[u32; 3]| t.iter().map(|&i| (surface.points[i as usize] - origin).norm()).product::<f64>();

@@ -36,7 +36,7 @@ pub enum Sv1dError {
         name: String,
     },
     /// A joint refers to a segment list that is missing or belongs to another joint.
-    #[error("line {line}: the joint has no segment list '{name}' of its own: correct it")]
+    #[error("line {line}: the segment list '{name}' is missing, or belongs to another joint: correct it")]
     NoList {
         /// Line of the file, from 1.
         line: usize,

@@ -289,7 +289,8 @@ fn is_connected(adjacency: &TetAdjacency) -> bool {
     left == 0
 }
 
-/// Returns the owner of each boundary face. Faces of joints and caps must be boundary faces, turned as they are, each named once.
+/// Returns the owner of each boundary face. Faces of joints and caps must be boundary faces
+/// of the same orientation, each listed once.
 fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let points = &part.mesh.points;
     let mut named: Vec<([u32; 3], Owner, [u32; 3])> = Vec::new();
