@@ -16,7 +16,7 @@ const TETS_PER_SECOND: f64 = 3.1e5;
 /// Memory of the program itself, with a network of some thousand edges.
 const AT_LEAST: u64 = 60_000_000;
 
-/// Number of blocks of a network, and estimate of what they take.
+/// Number of blocks of a network, and estimate of their cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Forecast {
     /// Number of clusters.
@@ -33,7 +33,7 @@ impl Forecast {
     /// Of a network.
     ///
     /// # Errors
-    /// When it cannot be partitioned.
+    /// The network cannot be partitioned.
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
         let (network, _) = split(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());

@@ -41,7 +41,7 @@ impl Seen {
     /// Updates the facts for other blocks, most of which are unchanged. `whole`: all of them.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     pub fn follow(&mut self, blocks: &Blocks, whole: &Whole) -> io::Result<()> {
         let records: Vec<Option<RecordId>> = blocks.records().collect();
         let (old, new) = (by_record(&self.records), by_record(&records));

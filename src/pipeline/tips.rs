@@ -12,14 +12,14 @@ pub const MOVES: [f64; 8] = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 3.0];
 /// Minimum length of the last piece of a vessel whose tip is shortened, in radii.
 const LEFT: f64 = 0.5;
 
-/// The ends of a cluster that could not be capped, ascending.
+/// Ends of a cluster that could not be capped, ascending.
 pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failures: &[BlockError]) -> Vec<u32> {
     let mut ends: Vec<u32> =
         failures.iter().chain(result.as_ref().err()).filter_map(failed_end).map(|(end, _)| end).collect();
     let left_open = result.as_ref().map_or(&[][..], |made| &made.about.uncapped);
     let is_open = |kind| matches!(kind, EndKind::Terminal(node) if left_open.contains(&node.0));
     ends.extend((0..).zip(&cluster.ends).filter(|(_, end)| is_open(end.kind)).map(|(i, _)| i));
-    // Where the block came out, what it says counts.
+    // A finished block lists its uncapped ends.
     if result.is_ok() {
         ends.retain(|&i| is_open(cluster.ends[i as usize].kind));
     }
@@ -28,7 +28,7 @@ pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failur
     ends
 }
 
-/// The end at which a block failed, if a tip is to blame, and its node.
+/// End at which a block failed, if a tip is the cause, and its node.
 fn failed_end(error: &BlockError) -> Option<(u32, NodeId)> {
     match error {
         BlockError::Cap { source: CapError::End { end, node: Some(node), .. }, .. } => Some((*end, *node)),
@@ -36,7 +36,7 @@ fn failed_end(error: &BlockError) -> Option<(u32, NodeId)> {
     }
 }
 
-/// The terminals for which a cluster failed: the one at which it did, and all that lie within other vessels if that is why.
+/// Terminals at which a cluster failed. If a tip lies within another vessel, all such tips are included.
 pub fn to_blame(cluster: &Cluster, error: &BlockError) -> Vec<NodeId> {
     if is_buried(error) {
         buried(cluster).map(|(_, node, _)| node).collect()

@@ -1,4 +1,4 @@
-//! Finished blocks, out of memory: kept under a key that is made of all that they depend on.
+//! Store of finished blocks outside main memory. The key of a block is a hash of all its inputs.
 //!
 //! A block is looked up by its key before it is meshed. So a block that does not change when others are cut again is not
 //! meshed again. A run that was killed is repeated from the start, and finds nearly all blocks in the store.
@@ -43,12 +43,12 @@ use shelf::Shelf;
 use crate::block::Bytes;
 use anastomesh_mesh::progress::Progress;
 
-/// A record of the store.
+/// Record of the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RecordId(u32);
 
 impl RecordId {
-    /// Its number: records are numbered through.
+    /// Number of the record; numbers are consecutive.
     pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
@@ -65,7 +65,7 @@ pub struct Store {
 enum Backend {
     Memory(RwLock<Vec<Arc<[u8]>>>),
     File(LogFile),
-    /// A work directory: its path, what others have written there, and the file that this run writes to.
+    /// Work directory: its path, the records of other runs, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
     /// Records of other runs, read-only.
     Shelf(Shelf),
@@ -77,10 +77,10 @@ impl Store {
         Self { place: Backend::Memory(RwLock::default()), known: Mutex::default() }
     }
 
-    /// In a file of `folder` that has no name and is gone when the store is dropped, however the program ends.
+    /// Opens a store in an unnamed file of `folder`, which disappears when the store is dropped or the program ends.
     ///
     /// # Errors
-    /// When there can be no file.
+    /// The file cannot be created.
     pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
         let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
         let log = LogFile::in_passing(folder).map_err(failed)?;
@@ -96,10 +96,10 @@ impl Store {
         Self::in_folder_as(Role::Alone { restart, make_missing: false }, folder, manifest)
     }
 
-    /// In a work directory, alone or as a shard among others.
+    /// Opens the store of a work directory, alone or as one of several shards.
     ///
     /// # Errors
-    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
+    /// The folder cannot be used, is in use, or belongs to another run; or its shards are not finished.
     pub(crate) fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
@@ -123,10 +123,10 @@ impl Store {
         }
     }
 
-    /// Says that all blocks of a shard are made, as far as they can be.
+    /// Marks a shard as done: all its blocks have been made or have failed.
     ///
     /// # Errors
-    /// When that cannot be written.
+    /// The mark cannot be written.
     pub(crate) fn mark_done(&self, shard: Shard) -> Result<(), StoreError> {
         let Backend::Folder(folder, _, own) = &self.place else { return Ok(()) };
         let write = || {
@@ -136,7 +136,7 @@ impl Store {
         write().map_err(|source| StoreError::Write { place: own.place(), source })
     }
 
-    /// The record under a key.
+    /// Returns the record of a key.
     pub(crate) fn find(&self, key: Key) -> Option<RecordId> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key.short()).copied()
     }
@@ -173,7 +173,7 @@ impl Store {
         }
     }
 
-    /// Bytes that the records take on a disk.
+    /// Size of the records on disk, in bytes.
     pub fn bytes_on_disk(&self) -> u64 {
         match &self.place {
             Backend::Memory(_) => 0,

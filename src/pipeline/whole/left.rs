@@ -91,7 +91,7 @@ impl Whole<'_> {
     /// Leaves it in its work directory, if its blocks are in one.
     ///
     /// # Errors
-    /// When that cannot be written.
+    /// The record cannot be written.
     pub fn leave(&self) -> Result<(), StoreError> {
         let Some(extents) = self.store.extents(self.plan.parts.iter().map(|part| part.record)) else { return Ok(()) };
         self.store.leave(NAME, &(extents, &*self.plan))
