@@ -27,7 +27,7 @@ pub struct SourceCounts {
 pub struct TetPiece<'a> {
     /// Vertices, as indices into the whole mesh's points.
     pub tets: Cow<'a, [[u32; 4]]>,
-    /// Block of each tetrahedron; may be empty when blocks are not known, then all are 0.
+    /// Block of each tetrahedron; empty if blocks are unknown, which means 0 for all.
     pub blocks: Cow<'a, [i32]>,
 }
 
@@ -36,9 +36,9 @@ pub struct TetPiece<'a> {
 pub struct FacePiece<'a> {
     /// Vertices, oriented outwards, as indices into the whole mesh's points.
     pub faces: Cow<'a, [[u32; 3]]>,
-    /// Patch of each face; may be empty when the boundary is not labelled, then all are 0.
+    /// Patch of each face; empty if the boundary is not labelled, which means 0 for all.
     pub patches: Cow<'a, [i32]>,
-    /// Block of the tetrahedron under each face; may be empty when blocks are not known, then all are 0.
+    /// Block of the tetrahedron under each face; empty if blocks are unknown, which means 0 for all.
     pub blocks: Cow<'a, [i32]>,
 }
 
@@ -65,7 +65,7 @@ pub trait MeshSource: Sync {
     /// Number of parts.
     fn parts(&self) -> u32;
 
-    /// The points that a part adds to those of the parts before it; its tetrahedra may name others.
+    /// Points that a part adds to those of earlier parts. Its tetrahedra may refer to points of all parts.
     ///
     /// # Errors
     /// Errors of reading the mesh.
@@ -101,8 +101,7 @@ pub trait MeshSource: Sync {
         Ok(LabelPiece { count: faces.len(), patches, blocks })
     }
 
-    /// The points of these numbers, which ascend and exist. Sources that can look into the middle of their points do not
-    /// read all of them for it.
+    /// Points with these indices, which must be valid and ascending. Sources with random access read only these points.
     ///
     /// # Errors
     /// Errors of reading the mesh.
@@ -118,7 +117,7 @@ pub trait MeshSource: Sync {
         Ok(found)
     }
 
-    /// The whole mesh, when it stands in memory: for formats that cannot be written in passes.
+    /// The whole mesh, if it is in memory. For formats that cannot be written in passes.
     fn whole(&self) -> Option<&VolumeMesh> {
         None
     }
@@ -191,7 +190,7 @@ impl dyn MeshSource + '_ {
     /// The corners of cells.
     ///
     /// # Errors
-    /// What reading the mesh fails with; `InvalidData` when a cell names a point that does not exist.
+    /// Errors of reading the mesh; `InvalidData` if a cell refers to a missing point.
     pub fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
         let mut ids = cells.as_flattened().to_vec();
         ids.sort_unstable();
@@ -204,7 +203,7 @@ impl dyn MeshSource + '_ {
         Ok(cells.iter().map(|cell| cell.map(at)).collect())
     }
 
-    /// As [`each_part`](Self::each_part), with the things counted that are to come.
+    /// As [`each_part`](Self::each_part), and compares the number of items with the expected one.
     pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
@@ -274,7 +273,7 @@ pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
     Ok(volume)
 }
 
-/// Appends as many values as there are things; those that are not known are 0.
+/// Appends one value per item; unknown values are 0.
 fn extend_or_zero(values: &mut Vec<i32>, piece: &[i32], count: usize) {
     let (before, known) = (values.len(), piece.len().min(count));
     values.extend_from_slice(&piece[..known]);
