@@ -1,5 +1,7 @@
-//! A whole network, from skeleton to checked mesh: a subtree of a real kidney where the shared data is there, else the
-//! fixture. On as many threads as there are cores, or `RAYON_NUM_THREADS`.
+//! Benchmark of a whole network, from skeleton to checked mesh.
+//!
+//! The network is a subtree of a real kidney if the shared data exists, else the fixture. One thread runs per core, or
+//! `RAYON_NUM_THREADS` threads.
 
 use anastomesh::io::{NetworkOptions, read_network};
 use anastomesh::meshing::{MeshPlan, mesh_network};

@@ -243,7 +243,7 @@ fn a_stopped_run_leaves_no_bar() {
     assert!(!rest.contains('%') && rest.contains("stopped; nothing is kept"), "{said:?}");
 }
 
-/// Levels of messages are true, and no message repeats its level.
+/// Every message has the correct level, and no message repeats its level in its text.
 #[test]
 fn levels_of_messages_are_true() {
     let folder = folder();

@@ -64,7 +64,7 @@ fn surfaces_that_bound_no_volume() {
 fn triangles_and_points_that_make_no_sense() {
     let mut flat = cube();
     flat.points.push(Point3::new(0.5, 0.0, 0.0));
-    // Edge 0 1 is split on one side only in name: a degenerate triangle fills the gap.
+    // Point 8 lies on edge 0 1. Two degenerate triangles close the gap between the edge and the point.
     flat.triangles.push([0, 8, 1]);
     flat.triangles.push([0, 1, 8]);
     refuse("a.off", off(&flat), &["--plc"], &["without area", "12"]);
@@ -256,7 +256,7 @@ fn facets_outside_are_left_out_with_a_note() {
 #[test]
 fn strict_refuses_what_would_be_left_out() {
     let all = cube_with_things_outside();
-    let parts = ["4 triangles lie outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
+    let parts = ["4 triangles outside", "filled region: 7, 8 (", "their facets", "count from 1", "--strict"];
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");

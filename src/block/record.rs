@@ -1,8 +1,14 @@
 //! Binary records of finished blocks, with access to single sections.
 //!
 //! Format: little-endian. A head of [`HEAD`] counts precedes the sections, whose lengths follow from the counts.
-//! Sections: certificate and report data (postcard); sizes of the joints, their vertices, their faces; caps and their
-//! faces; wall; points (3 × f64); tetrahedra and hull triangles (u16 for small point counts, else u32).
+//! The sections are
+//!
+//! - certificate and report data (postcard)
+//! - sizes of the joints, their vertices, their faces
+//! - caps and their faces
+//! - wall
+//! - points (3 × f64)
+//! - tetrahedra and hull triangles (u16 for small point counts, else u32)
 
 use std::borrow::Cow;
 use std::io;

@@ -12,7 +12,7 @@ use anastomesh_skeleton::{Branch, BranchId, NodeId, Skeleton};
 #[non_exhaustive]
 pub enum PartitionFlaw {
     /// Pieces and connectors do not cover a branch exactly once.
-    #[error("branch {} is not covered once around arc length {arc}", branch.0)]
+    #[error("branch {} is not covered exactly once near arc length {arc}", branch.0)]
     Coverage {
         /// The branch.
         branch: BranchId,
@@ -20,7 +20,7 @@ pub enum PartitionFlaw {
         arc: f64,
     },
     /// The tubes of a piece do not follow the vessel's axis or are not connected.
-    #[error("the tubes of cluster {} leave branch {} at {at}", cluster.0, branch.0)]
+    #[error("the tubes of cluster {} deviate from branch {} at {at}", cluster.0, branch.0)]
     Tubes {
         /// The cluster.
         cluster: ClusterId,
@@ -43,7 +43,7 @@ pub enum PartitionFlaw {
         cluster: ClusterId,
     },
     /// An end and its cut do not refer to each other, or a terminal has no end.
-    #[error("end {end} of cluster {} is not what its cut or terminal says", cluster.0)]
+    #[error("end {end} of cluster {} does not match its cut or terminal", cluster.0)]
     End {
         /// The cluster.
         cluster: ClusterId,
@@ -59,7 +59,7 @@ pub enum PartitionFlaw {
         end: u32,
     },
     /// A connector's path does not connect the end planes, or its cross-sections intersect.
-    #[error("the path of cut {} is bad at section {section}", cut.0)]
+    #[error("the path of cut {} is invalid at section {section}", cut.0)]
     Path {
         /// The cut.
         cut: CutId,

@@ -23,8 +23,9 @@ pub(super) fn tip_middle(radius: f64, overrun: f64) -> f64 {
     overrun - (1.0 - ROUND) * radius
 }
 
-/// End of a vessel: a solid cylinder from shortly before the end plane to the centre of the round tip, and half a ball
-/// about that centre.
+/// End of a vessel: a solid cylinder and half a ball.
+///
+/// The cylinder extends from shortly before the end plane to the centre of the round tip, which is the ball's centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tip {
     section: Section,

@@ -51,8 +51,8 @@ pub(super) struct Settler<'a> {
 const LARGE: usize = 24;
 
 /// Length before a plane, in radii, in which a vessel cannot obstruct its own tip. The axis of a straight vessel is
-/// clear of the tip from 2.8 radii on: 0.5 of tip, 1 radius, and a margin of 1.3 for parallel vessels. The rest is for
-/// bends.
+/// clear of the tip from 2.8 radii on. These are 0.5 of tip, 1 radius, and a margin of 1.3 for parallel vessels. The
+/// rest is for bends.
 const OWN_LEAD: f64 = 3.5;
 
 /// Step of a moving plane, in radii; it grows after `STEADY_STEPS` steps.

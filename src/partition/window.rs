@@ -37,7 +37,7 @@ impl<'a> CutFinder<'a> {
         Self { courses, params, adjacency, usual: cuttability(params.cuts), eager }
     }
 
-    /// Appends the cut positions of `branch`, or returns the reason why there are none.
+    /// Appends the cut positions of `branch`, or returns the reason why the branch has none.
     pub fn slots(&self, branch: u32, out: &mut Vec<Slot>) -> Option<UncutReason> {
         let course = &self.courses.get(branch);
         if self.params.forbidden_cuts.contains(&BranchId(branch)) {

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, SymmetricEigen};
 /// Maximum number of sample points.
 const ENOUGH: usize = 400_000;
 
-/// Sample points of an object: all points, or every n-th of very many.
+/// Sample points of an object: all points, or every n-th of a large number.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     points: Vec<Point3>,

@@ -1,5 +1,8 @@
-//! Blocks that meet. No block knows of the vessels of another one; when a web in the crotch of a fork, or the facets of a
-//! thick vessel, reach a vessel that runs close by, that is seen in the whole. The clusters are then made again, finer.
+//! Blocks that intersect each other.
+//!
+//! A block is meshed without knowledge of the vessels of other blocks. A web in the crotch of a bifurcation, or the facets
+//! of a thick vessel, may reach a vessel nearby. The check of the whole mesh finds this. The clusters are then meshed
+//! again with a finer grid.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,12 +20,12 @@ use anastomesh_mesh::progress::{Stage, ask};
 use anastomesh_skeleton::BranchId;
 use anastomesh_tet::parts::Watch;
 
-/// Cures of intersecting blocks, now and in earlier rounds.
+/// Cures of intersecting blocks, in this round and earlier ones.
 #[derive(Debug, Default)]
 pub struct Apart {
-    /// Blocks that met, as often as clusters were made again because of it.
+    /// Intersecting blocks, once per remeshed cluster.
     met: Vec<Meetings>,
-    /// Vessels that are not cut, for their connectors met something: as part of a cluster they can be made finer.
+    /// Vessels left uncut because their connectors intersected a block. As part of a cluster they can be refined.
     uncut: BTreeSet<BranchId>,
     /// Number of times that cures were added.
     rounds: usize,
@@ -32,7 +35,7 @@ pub struct Apart {
 const MAX_UNCUT_PASSES: usize = 2;
 
 impl Apart {
-    /// Decides what is done about meetings of blocks; no when nothing is left to try.
+    /// Decides how to cure intersecting blocks. Returns false if no cure is left.
     pub fn part(&mut self, meetings: &Meetings, blocks: &Blocks, run: &RunContext) -> bool {
         if meetings.is_empty() {
             return false;
@@ -64,11 +67,11 @@ impl Apart {
 }
 
 impl RunContext<'_> {
-    /// Makes blocks again as long as some meet and there is something to try; looks at their walls and at what is near them.
-    /// `seen`: the walls as they are. Ends as well when a block fails.
+    /// Remeshes blocks while some intersect and cures remain, and checks their walls and the walls nearby. `seen`: facts about
+    /// the present walls. Also ends when a block fails.
     ///
     /// # Errors
-    /// When the network cannot be cut otherwise, the store fails, or the run is told to stop.
+    /// The network cannot be cut otherwise, the store fails, or the run is cancelled.
     pub fn part(&mut self, mut blocks: Blocks, apart: &mut Apart, mut seen: Seen) -> Result<Blocks, RunError> {
         loop {
             match apart.met.last() {
@@ -87,11 +90,10 @@ impl RunContext<'_> {
         }
     }
 
-    /// Makes the clusters again whose walls meet others, in the given one of the ways that are for that. A cluster that does
-    /// not come out so is left as it is.
+    /// Remeshes the clusters whose walls intersect others, with the given strategy. A cluster for which it fails is unchanged.
     ///
     /// # Errors
-    /// When the store fails, or the run is told to stop.
+    /// The store fails, or the run is cancelled.
     fn set_apart(&mut self, blocks: &mut Blocks, meetings: &Meetings, way: RetryStrategy) -> Result<(), RunError> {
         let (plan, partition) = (self.shop.plan, &blocks.partition);
         let shop = self.shop.among(partition.clusters_len());

@@ -108,9 +108,11 @@ struct BlockAttempt {
     params: BlockParams,
 }
 
-/// The attempts at a cluster. `overlapping`: vessels of the network overlap in it, or come so close to each other that they
-/// may. If neither another grid nor a finer one with a narrower kernel keeps them apart they are taken as one, at once if
-/// that is what is wanted. `first`: the first of the ways that is tried.
+/// Attempts at a cluster. `overlapping`: vessels of the network overlap in it, or are so close that their tubes may.
+/// `first`: first strategy to try.
+///
+/// If neither another grid nor a finer one with a narrower kernel separates such vessels, they are fused. With
+/// `plan.fuse`, they are fused at once.
 fn attempts(plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Vec<BlockAttempt> {
     let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first);
     let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
@@ -154,8 +156,8 @@ impl Bar {
         block.certificate.is_sound() && worst_ratio(block) >= self.ratio
     }
 
-    /// A block is better if it is sound and not flat, and of such ones that whose smallest dihedral angle is larger; of others
-    /// the one whose flattest tetrahedron is rounder.
+    /// Sort key of blocks; larger is better. Sound blocks precede others, then blocks without flat tetrahedra. Of these, the
+    /// larger smallest dihedral angle is better; of others, the larger worst radius ratio.
     fn goodness(self, block: &Finished) -> (bool, bool, f64) {
         let is_not_flat = self.is_not_flat(block);
         let worst = if is_not_flat { block.certificate.least_dihedral() } else { worst_ratio(block) };
@@ -167,9 +169,10 @@ fn worst_ratio(block: &Finished) -> f64 {
     if block.hull.is_empty() { block.certificate.worst_ratio() } else { f64::INFINITY }
 }
 
-/// Makes a block in the first way that does it well: nothing fails, no tetrahedron is flat or slim, and the block's own check
-/// finds no fault. Else the best of those that came out is taken. Ends with the attempts, or once `is_over`. When nothing helps, the failure of the first way counts: it
-/// is what the dump of the input reproduces.
+/// Makes a block with the first strategy that succeeds: no error, no flat or slim tetrahedron, no fault in its own check.
+///
+/// Otherwise the best block is returned. If no attempt gives a block, the failure of the first is returned, because the
+/// dump of the input reproduces it. The attempts end early if `is_over` says so.
 fn first_good(
     block: &str,
     attempts: Vec<BlockAttempt>,
@@ -213,8 +216,11 @@ fn first_good(
     }
 }
 
-/// Meshes a cluster. `overlapping`: vessels of the network overlap in it; `first`: the way that is tried first; `original`:
-/// the number of a terminal in the network as it was read.
+/// Meshes a cluster.
+///
+/// - `overlapping`: vessels of the network overlap in it
+/// - `first`: first strategy to try
+/// - `original`: number of a terminal in the network as it was read
 pub fn cluster(
     id: ClusterId,
     cluster: &Cluster,

@@ -1,4 +1,4 @@
-//! The blocks of a network, and what they are called.
+//! Blocks of a network, and their names.
 
 use std::collections::BTreeSet;
 
@@ -18,18 +18,18 @@ const LISTED: usize = 20;
 /// Pairs of blocks whose walls meet, the lower number first: clusters by their ids, then connectors.
 pub type Meetings = Vec<[u32; 2]>;
 
-/// The blocks of a network.
+/// Blocks of a network.
 #[derive(Debug)]
 pub struct Blocks {
-    /// The partition that they belong to.
+    /// Partition that they belong to.
     pub partition: Layout,
-    /// For each cluster, whether vessels overlap in it.
+    /// True for each cluster with overlapping vessels.
     pub tangled: Vec<bool>,
-    /// By `ClusterId`; an error for a cluster that failed to the end.
+    /// By `ClusterId`; an error for a cluster without a successful attempt.
     pub clusters: Vec<BlockResult>,
     /// By `CutId`; none beside a failed cluster.
     pub connectors: Vec<Option<BlockResult>>,
-    /// Clusters that were made again, in another way than the usual one, because their walls met others.
+    /// Clusters that were remeshed with another strategy because their walls intersected others.
     pub apart: BTreeSet<u32>,
     /// Strategies that helped failed blocks.
     pub cured: FxHashMap<RecordId, Cured>,

@@ -10,8 +10,8 @@ use crate::surface::estimated_cells;
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::Skeleton;
 
-/// Tetrahedra per unit of length over radius, at ρ = 1, and how they grow with ρ: fitted to meshes of the kidney's
-/// subtrees at ρ = 3, 4 and 5.
+/// Tetrahedra per unit of length over radius at ρ = 1, and the exponent of ρ. Fitted to meshes of the kidney's subtrees at
+/// ρ = 3, 4 and 5.
 const TETS: f64 = 3.9;
 const POWER: f64 = 2.85;
 
@@ -19,13 +19,13 @@ const POWER: f64 = 2.85;
 const TETS_OF_TUBE: f64 = 4.4;
 const POWER_OF_TUBE: f64 = 2.94;
 
-/// Exponents of the core ratio, at forks and in tubes: fitted to chains of forks and
-/// straight tubes with edges of 1 to 3 at ρ = 3 and 5.
+/// Exponents of the core ratio, at forks and in tubes. Fitted to chains of forks and straight tubes with edges of 1 to 3 at
+/// ρ = 3 and 5.
 const POWER_OF_CORE: f64 = -0.7;
 const POWER_OF_CORE_OF_TUBE: f64 = -0.9;
 
-/// Shorter edges at a fork are as much more as so many radii of vessel, times what this power of their length is above 1: fitted
-/// to edges of a half and a quarter at ρ = 3 and 5.
+/// Additional tetrahedra for shorter edges at a fork, as a length of vessel in radii, and the exponent of the edge length.
+/// An edge factor f adds `FINE_RADII` · (f^−`POWER_OF_FORK` − 1). Fitted to factors of 1/2 and 1/4 at ρ = 3 and 5.
 const FINE_RADII: f64 = 5.0;
 const POWER_OF_FORK: f64 = 1.75;
 
@@ -43,8 +43,8 @@ const BYTES_PER_CELL: f64 = 300.0;
 const PER_TET: f64 = 60.0;
 const PER_CELL: f64 = 80.0;
 
-/// Bytes of a tetrahedron in the store and in a VTU, its share of points and boundary faces included; of a VTU whose vertex
-/// numbers take 64 bits, and are compressed.
+/// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. The last is for a
+/// compressed VTU with vertex numbers of 64 bits.
 const STORED_PER_TET: f64 = 17.0;
 const WRITTEN_PER_TET: f64 = 35.0;
 const WRITTEN_WIDE_PER_TET: f64 = 23.0;

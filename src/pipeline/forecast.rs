@@ -23,7 +23,7 @@ const ATTEMPTS: f64 = 4.0;
 /// Memory of the program itself, with a network of some thousand edges.
 const AT_LEAST: u64 = 60_000_000;
 
-/// Number of blocks of a network, and estimate of what they take.
+/// Number of blocks of a network, and estimate of their cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Forecast {
     /// Number of clusters.
@@ -44,7 +44,7 @@ impl Forecast {
     /// Of a network.
     ///
     /// # Errors
-    /// When it cannot be partitioned.
+    /// The network cannot be partitioned.
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
         let (network, _) = split(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
@@ -64,14 +64,14 @@ impl Forecast {
         })
     }
 
-    /// Seconds on so many threads.
+    /// Seconds on this number of threads.
     pub fn seconds(&self, threads: usize) -> f64 {
         let Estimate { tets, operations, .. } = self.estimate;
         let more = (operations - OPERATIONS_PER_TET * tets).max(0.0) + self.retry_operations;
         (tets / TETS_PER_SECOND + SECONDS_PER_OPERATION * more) / threads.max(1) as f64
     }
 
-    /// Bytes of memory on so many threads.
+    /// Bytes of memory on this number of threads.
     pub fn memory(&self, threads: usize) -> u64 {
         AT_LEAST + self.estimate.largest_block_bytes * threads as u64
     }

@@ -1,4 +1,4 @@
-//! One block made, or found among those that are done.
+//! Making of one block, or lookup in the store.
 
 use std::io;
 use std::sync::Arc;
@@ -12,17 +12,17 @@ use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Layout};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::parts::Watch;
 
-/// A finished block in the store, and what it adds to the whole. There are millions of them.
+/// Finished block in the store, with its contribution to the counts of the mesh. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredBlock {
     /// Place in the store.
     pub record: RecordId,
-    /// Points that are its own, those that it shares with blocks before it left out.
+    /// Number of its points, without those shared with earlier blocks.
     pub points: u32,
     pub tets: u32,
 }
 
-/// A block, or why there is none: said elsewhere, as there are millions of blocks and few that fail.
+/// Block, or its error. The error is boxed to keep results small: there are millions of blocks, and few fail.
 pub type BlockResult = Result<StoredBlock, Box<BlockError>>;
 
 /// Common input of all blocks of a run, and their store.
@@ -48,10 +48,10 @@ impl<'a> Workshop<'a> {
 }
 
 impl Workshop<'_> {
-    /// A cluster. `overlapping`: vessels of the network overlap in it; `first`: the way in which it is tried first.
+    /// Makes a cluster. `overlapping`: vessels of the network overlap in it. `first`: first strategy to try.
     ///
     /// # Errors
-    /// When the store fails; a block that fails is no error here.
+    /// The store fails. A failed block is not an error here.
     pub fn cluster(
         &self,
         id: ClusterId,
@@ -73,10 +73,10 @@ impl Workshop<'_> {
         self.keep(key, tried)
     }
 
-    /// A connector between the discs that the vessel alone gives.
+    /// Makes a connector between discs that depend on the vessel alone.
     ///
     /// # Errors
-    /// When the store fails; a block that fails is no error here.
+    /// The store fails. A failed block is not an error here.
     pub fn free_connector(&self, id: CutId, cut: &Cut) -> Result<BlockResult, StoreError> {
         let plan = &*self.plan.of_tube(cut.size);
         let key = connector_key(cut, plan, &[]);
@@ -86,10 +86,10 @@ impl Workshop<'_> {
         self.keep(key, attempts::free_connector(id, cut, plan))
     }
 
-    /// A connector between the ends of its two clusters, which are done.
+    /// Makes a connector between the ends of its two finished clusters.
     ///
     /// # Errors
-    /// When the store fails; a block that fails is no error here.
+    /// The store fails. A failed block is not an error here.
     pub fn woven_connector(&self, id: CutId, cut: &Cut, ends: &[StoredEnd; 2]) -> Result<BlockResult, StoreError> {
         let key = connector_key(cut, self.plan, ends);
         if let Some(kept) = self.found(key)? {
@@ -128,15 +128,15 @@ impl Workshop<'_> {
     /// Report data of a block.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// The block cannot be read.
     pub fn about(&self, kept: &StoredBlock) -> io::Result<About> {
         Ok(Record::open(&self.store.bytes(kept.record))?.notes()?.1)
     }
 
-    /// The two ends that a connector is woven between; none beside a failed cluster.
+    /// Ends between which a connector is woven; `None` beside a failed cluster.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// The blocks cannot be read.
     pub fn stored_ends(
         &self,
         partition: &Layout,

@@ -10,15 +10,15 @@ use std::borrow::Cow;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointStyle {
-    /// In one pass: each plane has the disc that the vessel alone gives, and blocks are meshed in any order. Joints stay
-    /// as the blocks have them, which is better than what smoothing makes of them.
+    /// One pass. The disc at each cut depends on the vessel alone, so blocks are meshed in any order. Joints are not smoothed,
+    /// because smoothing makes them worse.
     #[default]
     Disc,
-    /// In two passes: clusters end as suits their walls, then a connector is woven between the ends of its two clusters
-    /// (3.2.3), and joints are smoothed (3.2.4). The whole mesh is held in memory.
+    /// Two passes with the whole mesh in memory. Clusters end in surfaces that suit their walls. Then a connector is woven
+    /// between the ends of its two clusters (section 3.2.3), and joints are smoothed (section 3.2.4).
     Woven,
-    /// No vessel is cut: every component is one cluster, meshed as fine as its thinnest vessel asks for where edges do not
-    /// follow the radius. For comparison.
+    /// No vessel is cut; every component is one cluster. Where edges do not follow the radius, the thinnest
+    /// vessel sets the resolution. For comparison.
     None,
 }
 
@@ -36,11 +36,11 @@ pub struct MeshPlan {
     /// Resolution ρ: voxels across the thinnest vessel of a cluster; larger is finer.
     pub rho: f64,
     /// Exponent of edge lengths over the vessel radius. 1: ρ voxels across every vessel;
-    /// 0: edges are as short all over a cluster as its thinnest vessel asks for.
+    /// 0: the thinnest vessel sets the edge length of its whole cluster.
     pub follow: f64,
     /// Aspect ratio of tetrahedra along template tubes between bifurcations and caps.
     pub stretch: f64,
-    /// Shorter edges at forks, and tubes stretched as the network says.
+    /// Factors on edge lengths at forks, and stretch of tubes from a node array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_at: Option<SizeAt>,
     /// Ratio of edge lengths on the axis to those at the wall.
@@ -50,23 +50,22 @@ pub struct MeshPlan {
     pub layers: Option<Layers>,
     /// Joint style at cuts.
     pub joint: JointStyle,
-    /// Leave woven joints as the blocks have them instead of smoothing across them.
+    /// Do not smooth woven joints.
     pub frozen_joints: bool,
-    /// Bytes of memory that blocks may take while they are made, and walls while they are checked. Says how many blocks
-    /// are made at a time, nothing about the mesh.
+    /// Memory limit in bytes, for blocks while they are made and for walls while they are checked. It limits the number of
+    /// blocks made at a time. The mesh does not depend on it.
     #[serde(skip)]
     pub memory: u64,
     /// Terminals that are inlets, as indices of nodes in the file that was read. Components without one take the
     /// terminal of largest radius.
     pub roots: Vec<u32>,
-    /// Mesh vessels that overlap together, so that they become one lumen, knowingly: the mesh is to have the loops that
-    /// come of it.
+    /// Fuse overlapping vessels to one lumen. The expected number of loops includes those of fused vessels.
     pub fuse: bool,
-    /// Stop at the closed surfaces of the blocks, and fill none: what comes is the boundary that the mesh would have.
+    /// Make only the closed surfaces of the blocks. The result is the boundary of the mesh.
     pub hollow: bool,
     /// Leave out blocks that fail instead of stopping.
     pub keep_going: bool,
-    /// Folder for the inputs of blocks that fail; none writes no dumps.
+    /// Folder for the inputs of failed blocks; `None` writes no dumps.
     #[serde(skip)]
     pub dump_dir: Option<std::path::PathBuf>,
 }
@@ -109,47 +108,47 @@ impl Default for MeshPlan {
     }
 }
 
-/// A plan that cannot be run.
+/// Invalid plan.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// Woven joints are an optional part of the program.
     #[error("this build has no woven joints: give --joint disc, or build with the cargo feature `woven`")]
     NoWovenJoints,
-    /// ρ outside of what makes sense.
+    /// ρ is out of range.
     #[error("rho = {0} is out of range: give at least 2.5 (usual are 3 to 5; larger is finer)")]
     Rho(f64),
-    /// The power outside of what makes sense.
+    /// The exponent is out of range.
     #[error("follow = {0} is out of range: give 0 (uniform edge length) to 1 (proportional to the radius)")]
     Follow(f64),
-    /// A stretch outside of what makes sense.
+    /// The stretch is out of range.
     #[error("stretch = {0} is out of range: give 1 (isotropic) to {MOST_STRETCH}")]
     Stretch(f64),
-    /// Woven joints, or none, have no tubes by template.
+    /// Stretch needs template tubes, which only the joint style `Disc` has.
     #[error("stretch = {0} needs the joint style disc")]
     StretchWoven(f64),
-    /// Edges at forks outside of what makes sense.
+    /// The factor at forks is out of range.
     #[error("size-at = {0} is out of range: give {LEAST_SIZE} (shortest edges at bifurcations) to 1 (no change)")]
     SizeAt(f64),
-    /// Woven joints, or none, have no discs that stay as they are.
+    /// Factors at forks need fixed discs, which only the joint style `Disc` has.
     #[error("size-at needs the joint style disc")]
     SizeAtWoven,
-    /// Two that say how long tubes are stretched.
+    /// Two options set the stretch of tubes.
     #[error("stretch = {stretch} and the size-at array '{array}' both set the stretch of tubes: omit one")]
     StretchTwice {
-        /// The one.
+        /// First option.
         stretch: f64,
-        /// The other.
+        /// Second option.
         array: String,
     },
-    /// Edges in the core outside of what makes sense.
+    /// The core ratio is out of range.
     #[error("core = {0} is out of range: give {least} to {most} (ratio of edge lengths, axis to wall)",
         least = CORES[0], most = CORES[1])]
     Core(f64),
-    /// Layers that cannot be.
+    /// The parameters of layers are invalid.
     #[error(transparent)]
     Layers(#[from] LayersError),
-    /// Layers are in filled blocks that meet in discs.
+    /// Layers need filled blocks and the joint style `Disc`.
     #[error("layers need the joint style disc and a volume mesh")]
     LayersWoven,
 }
@@ -200,7 +199,7 @@ impl MeshPlan {
     }
 
     /// # Errors
-    /// If a parameter is out of its range.
+    /// A parameter is out of range.
     pub fn validate(&self) -> Result<(), PlanError> {
         if self.weaves_joints() && !cfg!(feature = "woven") {
             return Err(PlanError::NoWovenJoints);

@@ -118,7 +118,8 @@ pub struct MeshSize {
 }
 
 impl RunReport {
-    /// Terminals without a cap, as indices in the file that was read: those that were let go, and those for which a block failed.
+    /// Terminals without a cap, as indices in the file that was read: those abandoned
+    /// when vessels were fused, and those of failed blocks.
     pub fn uncapped(&self) -> impl Iterator<Item = u32> {
         self.fused.iter().flat_map(|f| &f.uncapped).chain(self.failed.iter().flat_map(|f| &f.uncapped)).copied()
     }
@@ -151,8 +152,8 @@ pub struct RunReport {
     pub nodes_split: usize,
     /// Vessels that overlap.
     pub overlaps: Vec<Meeting>,
-    /// Pairs of edges that share no node and whose tubes meet, neighbours along a vessel included; each edge as a pair of
-    /// node indices in the file that was read.
+    /// Pairs of edges without a common node whose tubes intersect, including neighbours along a vessel. Each edge is a pair
+    /// of node indices in the file that was read.
     #[serde(skip)]
     pub unconnected: Vec<[[u32; 2]; 2]>,
     /// The blocks.

@@ -1,5 +1,7 @@
-//! All blocks of a network, with retries: a block that fails is tried with other parameters, then with its cuts moved,
-//! then joined to its neighbours. A round makes the blocks that it changes; all others are carried over.
+//! All blocks of a network, with retries.
+//!
+//! A failed block is tried with other parameters, then with its cuts moved, then joined to its neighbours. A round makes
+//! the blocks that it changes; all others are kept.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -40,11 +42,14 @@ pub struct RunContext<'a> {
 }
 
 impl RunContext<'_> {
-    /// Meshes every block, changing the partition where blocks fail. `uncut`: vessels that are not cut. `before`: blocks of the
-    /// network as it was cut before. `fits` is asked before the first block.
+    /// Meshes every block, and changes the partition where blocks fail.
+    ///
+    /// - `uncut`: vessels that are not cut
+    /// - `before`: blocks of the previous partition
+    /// - `fits`: receives the estimate before the first block, and may refuse it
     ///
     /// # Errors
-    /// When the network cannot be partitioned, or blocks cannot be kept.
+    /// The network cannot be partitioned, or blocks cannot be stored.
     pub fn build(
         &mut self,
         uncut: &BTreeSet<BranchId>,
@@ -79,7 +84,7 @@ impl RunContext<'_> {
         }
     }
 
-    /// Branches that are to be in one cluster, as their vessels overlap.
+    /// Branches that must be in one cluster because their vessels overlap.
     pub(super) fn together(&self) -> BTreeSet<[BranchId; 2]> {
         let overlapping = self.overlaps.pairs.iter().filter(|_| self.shop.plan.fuse).map(|o| o.edges);
         branch_pairs(self.shop.skeleton, overlapping).into_iter().collect()
@@ -117,7 +122,7 @@ impl RunContext<'_> {
         }
     }
 
-    /// All blocks of a partition; none needs another, unless joints are woven.
+    /// Makes all blocks of a partition. Blocks are independent, unless joints are woven.
     fn pass(&mut self, partition: Layout, before: Option<Blocks>) -> Result<Blocks, RunError> {
         let shop = self.shop.among(partition.clusters_len());
         let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps);
@@ -145,7 +150,7 @@ impl RunContext<'_> {
         Ok(Blocks { partition, tangled, clusters, connectors, apart, cured, retries, times })
     }
 
-    /// Makes what is missing, clusters and connectors in any order.
+    /// Makes missing blocks, clusters and connectors in any order.
     fn free(
         &mut self,
         making: &Making,
@@ -163,7 +168,7 @@ impl RunContext<'_> {
         Ok((all(clusters), connectors))
     }
 
-    /// Makes what is missing, connectors after the clusters between whose ends they are.
+    /// Makes missing blocks; connectors follow their two clusters.
     fn woven(
         &mut self,
         making: &Making,
@@ -183,8 +188,7 @@ impl RunContext<'_> {
         Ok((clusters, connectors))
     }
 
-    /// One stage over blocks: what became of them. Ends early when it is told to: blocks that failed because of that are no
-    /// failures.
+    /// Runs one stage over blocks, and returns their results. Blocks that a cancellation stops do not count as failures.
     pub(super) fn timed<T: Send>(
         &mut self,
         stage: Stage,
@@ -206,7 +210,7 @@ impl RunContext<'_> {
         self.clock.time(progress, stage, total, || costliest_first(costs, memory, step))
     }
 
-    /// Adds what blocks say of failures before they came out, unless that has been told.
+    /// Adds the failed attempts of successful blocks that have not been reported.
     fn tell_cured(&self, blocks: &Blocks, told: &mut BTreeSet<RecordId>, retries: &mut Vec<Retry>) {
         let (skeleton, partition) = (self.shop.skeleton, &blocks.partition);
         for (block, record) in (0_u32..).zip(blocks.records()) {
@@ -251,7 +255,7 @@ impl Making<'_> {
         self.hear(self.stopwatch.time(block as usize, make)?)
     }
 
-    /// A connector between the ends of its clusters; none beside one that failed.
+    /// Makes a connector between the ends of its clusters; `None` beside a failed one.
     fn woven(&self, id: CutId, clusters: &[BlockResult]) -> Result<Option<BlockResult>, StoreError> {
         let cut = &self.partition.cut(id);
         let Some(ends) = self.shop.stored_ends(self.partition, id, cut, clusters)? else { return Ok(None) };
@@ -259,7 +263,7 @@ impl Making<'_> {
         self.hear(self.stopwatch.time(clusters.len() + id.0 as usize, make)?).map(Some)
     }
 
-    /// Notes what a block says of failures before it came out.
+    /// Records the failed attempts of a successful block.
     fn hear(&self, made: BlockResult) -> Result<BlockResult, StoreError> {
         if let Ok(kept) = &made
             && let Some(cured) = self.shop.about(kept)?.cured
@@ -270,12 +274,12 @@ impl Making<'_> {
     }
 }
 
-/// The numbers of blocks that have to be made; the first has the number `from`.
+/// Numbers of the blocks to make; the first block has the number `from`.
 fn missing(made: &[Option<BlockResult>], from: usize) -> impl Iterator<Item = u32> {
     made.iter().enumerate().filter(|(_, made)| made.is_none()).map(move |(i, _)| (from + i) as u32)
 }
 
-/// Blocks of which none is missing.
+/// Returns the blocks if none is missing.
 fn all(made: Vec<Option<BlockResult>>) -> Vec<BlockResult> {
     made.into_iter().map_while(|made| made).collect()
 }

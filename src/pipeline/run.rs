@@ -1,4 +1,4 @@
-//! The whole way from a skeleton to a checked, labelled mesh.
+//! Meshing of a skeleton, up to a checked and labelled mesh.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -27,15 +27,15 @@ use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::split_shared;
 use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
-/// A mesh in memory, what it has to be, what was found, what was done.
+/// Mesh in memory, with its expected topology, check and report.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Meshed {
-    /// The mesh of the network, its boundary labelled.
+    /// Mesh of the network with a labelled boundary.
     pub mesh: VolumeMesh,
     /// Expected topology.
     pub expectation: Expectation,
-    /// The result of the check.
+    /// Result of the check.
     pub check: CheckReport,
     /// Report of the run.
     pub report: RunReport,
@@ -43,15 +43,15 @@ pub struct Meshed {
     pub network: Arc<Skeleton>,
 }
 
-/// A mesh whose blocks are in a store, what it has to be, what was found, what was done.
+/// Mesh with blocks in a store, with its expected topology, check and report.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Stored<'a> {
-    /// The mesh, to be read in passes.
+    /// Mesh, to be read in passes.
     pub whole: Whole<'a>,
     /// Expected topology.
     pub expectation: Expectation,
-    /// The result of the check.
+    /// Result of the check.
     pub check: CheckReport,
     /// Report of the run.
     pub report: RunReport,
@@ -59,10 +59,11 @@ pub struct Stored<'a> {
     pub network: Arc<Skeleton>,
 }
 
-/// Meshes a cleaned network into a store; the mesh is never in memory as a whole. Joints are not smoothed. Uses the
-/// current rayon pool; the result does not depend on its size. `fits` hears what the run will take before anything is
-/// meshed, and may refuse. `progress` is also asked by every pass over what comes of it: one that is to stop ends with
-/// an error of the kind `Other`.
+/// Meshes a cleaned network into a store. The mesh is never in memory as a whole. Joints are not smoothed. Uses the
+/// current rayon pool; the result does not depend on its size.
+///
+/// `fits` receives the estimate of the run before any block is meshed, and may refuse it. Passes over the result also ask
+/// `progress` whether to stop; a cancelled pass ends with an error of the kind `Other`.
 ///
 /// ```
 /// use anastomesh::io::{MeshNotes, NetworkOptions, read_network, write_mesh};
@@ -118,8 +119,8 @@ pub(super) fn mesh_timed<'a>(
         let whole = job.numbered(&mut blocks, clock)?;
         let looked = clock.time(progress, Stage::Check, 0, || whole.look(plan.memory))?;
         ask(progress)?;
-        // Where blocks meet they are made again without a look at all others, and then everything is looked at once more: the
-        // check of the whole has the last word. Woven connectors belong to the clusters as they are.
+        // Intersecting blocks are made again without checking all others. Then all blocks are checked again, because only the
+        // check of the whole mesh decides. Woven connectors depend on their clusters, so they are excepted.
         let mut run = job.run(clock);
         if plan.joint != JointStyle::Woven && apart.part(&whole.blocks_that_meet(&looked), &blocks, &run) {
             let seen = Seen::of(&blocks, &whole, looked);
@@ -127,7 +128,7 @@ pub(super) fn mesh_timed<'a>(
             blocks = run.part(blocks, &mut apart, seen)?;
             continue;
         }
-        // What is in memory for the blocks is not while the rest is checked.
+        // Data of the blocks is dropped before the rest is checked.
         let meshed = Arc::clone(&job.skeleton);
         let (mut report, expectation) = job.described(blocks)?;
         let rest = || looked.check(whole.patches(), Some(&expectation));
@@ -174,10 +175,10 @@ impl<'a, 'b> Job<'a, 'b> {
         RunContext { overlaps: &self.overlaps, shop: self.shop(), progress: self.progress, clock }
     }
 
-    /// The whole over all blocks.
+    /// Combines all blocks.
     ///
     /// # Errors
-    /// When blocks failed that may not, and when it cannot be numbered or left in its work directory.
+    /// Blocks failed without `keep_going`, there are too many vertices, or the work directory cannot be written.
     pub(super) fn numbered(&self, blocks: &mut Blocks, clock: &mut Clock) -> Result<Whole<'a>, RunError> {
         let Self { skeleton, terminals, plan, store, progress, .. } = self;
         let nothing_left = blocks.clusters.iter().all(Result::is_err);
@@ -243,8 +244,9 @@ fn expectation(skeleton: &Skeleton, blocks: &Blocks, topology: &Topology) -> Exp
     Expectation { loops, terminals: adjacency.terminals().iter().map(|&n| skeleton.node(n).original).collect() }
 }
 
-/// Loops of each connected piece when vessels are meshed together on purpose: the handles of its clusters, and the loops
-/// of the graph in which clusters are nodes and connectors are edges. Sorted, as pieces have no other name.
+/// Loops of each connected piece when vessels are fused on purpose, sorted because pieces have no names.
+///
+/// They are the handles of its clusters, and the loops of the graph with clusters as nodes and connectors as edges.
 fn fused_loops(blocks: &Blocks, handles: &[i64]) -> Vec<u32> {
     let sides = || (0..blocks.partition.cuts_len() as u32).map(|cut| blocks.partition.sides_of_cut(CutId(cut)));
     let mut piece: Vec<usize> = (0..blocks.partition.clusters_len()).collect();

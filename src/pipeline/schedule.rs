@@ -21,7 +21,7 @@ struct Gate {
     left: Condvar,
 }
 
-/// A block that was let in; it leaves when this is dropped, even by a panic, so that nobody waits for it in vain.
+/// Admitted block. Dropping it releases its memory, even in a panic, so that no other block waits forever.
 struct AdmittedBlock<'a> {
     gate: &'a Gate,
     bytes: u64,
@@ -86,7 +86,7 @@ pub fn costliest_first<T: Send, E: Send>(
     rayon::broadcast(one_thread);
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some((_, error)) => Err(error),
-        // All are there.
+        // All results exist.
         None => Ok(done.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().map_while(|t| t).collect()),
     }
 }
@@ -111,7 +111,7 @@ mod tests {
         let (now, most) = (Mutex::new(0), Mutex::new(0));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().expect("threads");
         let work = |i: usize| {
-            *now.lock().expect("held by nobody that failed") += bytes[i];
+            *now.lock().expect("no holder panicked") += bytes[i];
             let used = *now.lock().expect("likewise");
             let mut most = most.lock().expect("likewise");
             *most = used.max(*most);

@@ -41,7 +41,7 @@ impl Seen {
     /// Updates the facts for other blocks, most of which are unchanged. `whole`: all of them.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     pub fn follow(&mut self, blocks: &Blocks, whole: &Whole) -> io::Result<()> {
         let records: Vec<Option<RecordId>> = blocks.records().collect();
         let (old, new) = (by_record(&self.records), by_record(&records));
@@ -94,8 +94,7 @@ fn by_record(records: &[Option<RecordId>]) -> Vec<u32> {
     places.into_iter().map(|(place, _)| place).collect()
 }
 
-/// Blocks whose walls are not what they were: those that are new, and those beside them, for a joint to which nothing is
-/// joined is wall.
+/// Blocks whose walls have changed: new blocks, and their neighbours, because an unjoined joint is wall.
 fn changed(partition: &Layout, is_new: impl Fn(u32) -> bool) -> Vec<bool> {
     let clusters = partition.clusters_len() as u32;
     let blocks = clusters + partition.cuts_len() as u32;
@@ -153,7 +152,7 @@ mod tests {
         }
     }
 
-    /// A fork with a vessel through its crotch, and so many forks far from it.
+    /// A fork with a vessel through its crotch, and `count` forks far from it.
     fn many_forks(count: u32) -> Skeleton {
         let mut network = through_the_crotch(4.0);
         for k in 1..=count {

@@ -32,7 +32,7 @@ pub struct ShareReport {
     pub share: usize,
     /// Those of its blocks that were there before.
     pub found: usize,
-    /// Those that fail: the run that joins the shards cuts the network anew there.
+    /// Failed blocks. The run that joins the shards cuts the network again there.
     pub failed: usize,
     /// Seconds that its blocks took.
     pub seconds: f64,
@@ -42,11 +42,11 @@ pub struct ShareReport {
     pub stages: Vec<StageTime>,
 }
 
-/// Makes the share of the blocks of a network that is a shard's, in the first round: what fails, or meets another block, is
-/// seen to by the run that joins the shards. `fits` hears what all blocks will take, and may refuse.
+/// Makes the blocks of a shard in the first round. The run that joins the shards handles blocks that fail or intersect
+/// others. `fits` receives the estimate for all blocks, and may refuse it.
 ///
 /// # Errors
-/// See [`RunError`]; a block that fails is none.
+/// See [`RunError`]. A failed block is not an error.
 pub fn make_share(
     store: &Store,
     network: Arc<Skeleton>,

@@ -17,7 +17,7 @@ pub struct TerminalPatches {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("root node {node} (from 0) is not a terminal; name a node with one edge")]
 pub struct NotATerminal {
-    /// The node as it was given.
+    /// Node as given.
     pub node: u32,
 }
 
@@ -27,7 +27,7 @@ pub struct NotATerminal {
 /// nodes.
 ///
 /// # Errors
-/// When a root is not a terminal of the skeleton.
+/// A root is not a terminal of the skeleton.
 pub fn assign(skeleton: &Skeleton, roots: &[u32]) -> Result<TerminalPatches, NotATerminal> {
     let adjacency = skeleton.adjacency();
     let terminals = adjacency.terminals();

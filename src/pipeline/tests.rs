@@ -383,7 +383,7 @@ fn some_points_of_a_stored_mesh_are_found_without_the_others() {
 #[test]
 fn where_a_block_is_missing_the_others_end_in_patches_of_their_own() {
     let mut network = hair_on_a_trunk();
-    // Joined to its neighbours the block fails as well; those further off have no part in it.
+    // The block fails as well when it is joined to its neighbours. More distant blocks are not affected.
     let mut last = NodeId(0);
     for (k, number) in (1..=6).zip((4..).step_by(2)) {
         let z = -1e5 * f64::from(k);
@@ -402,7 +402,7 @@ fn where_a_block_is_missing_the_others_end_in_patches_of_their_own() {
     assert!(missing.iter().all(|patch| meshed.mesh.boundary_patch.contains(&patch.id)), "each disc has faces");
 }
 
-/// Says to stop after so many blocks.
+/// Requests a stop after a number of blocks.
 struct Stops {
     after: usize,
     blocks: AtomicUsize,

@@ -58,7 +58,7 @@ pub struct BlockTimes {
 }
 
 impl BlockTimes {
-    /// Adds the seconds of a block; connectors are numbered after so many clusters.
+    /// Adds the seconds of a block. Connectors are numbered after the clusters.
     fn add(&mut self, block: usize, clusters: usize, seconds: f64) {
         let connector = block.checked_sub(clusters);
         *(if connector.is_some() { &mut self.connectors } else { &mut self.clusters }) += seconds;
@@ -80,7 +80,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Of the blocks of a partition with so many clusters. `before`: what was timed before.
+    /// Stopwatch for the blocks of a partition with this number of clusters. `before`: times of earlier rounds.
     pub fn new(before: BlockTimes, clusters: usize) -> Self {
         Self { times: Mutex::new(before), clusters }
     }

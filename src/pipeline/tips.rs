@@ -1,25 +1,25 @@
-//! Tips that cannot be capped where they are: put out or drawn back along their vessel until they can.
+//! Tips that cannot be capped in place. They are extended or shortened along their vessel until a cap fits.
 
 use crate::block::{BlockError, Finished, buried};
 use crate::partition::{Cluster, EndKind};
 use crate::surface::{CapError, CapFailure};
 use anastomesh_skeleton::NodeId;
 
-/// Displacements of a tip to try in turn, in its radii: outwards, where another vessel of its branch point is in the
-/// way, or back, where it ends in another vessel.
+/// Displacements of a tip to try in turn, in its radii. Positive ones move it outwards, past another vessel of its branch
+/// point. Negative ones move it back, out of another vessel.
 pub const MOVES: [f64; 8] = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 3.0];
 
 /// Minimum length of the last piece of a vessel whose tip is shortened, in radii.
 const LEFT: f64 = 0.5;
 
-/// The ends of a cluster that could not be capped, ascending.
+/// Ends of a cluster that could not be capped, ascending.
 pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failures: &[BlockError]) -> Vec<u32> {
     let mut ends: Vec<u32> =
         failures.iter().chain(result.as_ref().err()).filter_map(failed_end).map(|(end, _)| end).collect();
     let left_open = result.as_ref().map_or(&[][..], |made| &made.about.uncapped);
     let is_open = |kind| matches!(kind, EndKind::Terminal(node) if left_open.contains(&node.0));
     ends.extend((0..).zip(&cluster.ends).filter(|(_, end)| is_open(end.kind)).map(|(i, _)| i));
-    // Where the block came out, what it says counts.
+    // A finished block lists its uncapped ends.
     if result.is_ok() {
         ends.retain(|&i| is_open(cluster.ends[i as usize].kind));
     }
@@ -28,7 +28,7 @@ pub fn uncapped(cluster: &Cluster, result: &Result<Finished, BlockError>, failur
     ends
 }
 
-/// The end at which a block failed, if a tip is to blame, and its node.
+/// End at which a block failed, if a tip is the cause, and its node.
 fn failed_end(error: &BlockError) -> Option<(u32, NodeId)> {
     match error {
         BlockError::Cap { source: CapError::End { end, node: Some(node), .. }, .. } => Some((*end, *node)),
@@ -36,7 +36,7 @@ fn failed_end(error: &BlockError) -> Option<(u32, NodeId)> {
     }
 }
 
-/// The terminals for which a cluster failed: the one at which it did, and all that lie within other vessels if that is why.
+/// Terminals at which a cluster failed. If a tip lies within another vessel, all such tips are included.
 pub fn to_blame(cluster: &Cluster, error: &BlockError) -> Vec<NodeId> {
     if is_buried(error) {
         buried(cluster).map(|(_, node, _)| node).collect()
@@ -50,8 +50,8 @@ pub fn is_buried(error: &BlockError) -> bool {
     matches!(error, BlockError::Cap { source: CapError::End { reason: CapFailure::Buried, .. }, .. })
 }
 
-/// The cluster with each of some tips moved by so many of its radii; none when a vessel is too short for it, or a tip lies
-/// within another vessel then.
+/// Returns the cluster with some tips moved, each by a number of its radii. `None` if a vessel is too short, or if a moved
+/// tip lies within another vessel.
 pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     let mut result = cluster.clone();
     for &(i, radii) in moves {

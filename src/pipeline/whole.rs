@@ -42,14 +42,14 @@ impl std::fmt::Debug for CancelOnly<'_> {
     }
 }
 
-/// Blocks that are read at a time for what they add to the boundary.
+/// Number of blocks read at a time to assemble the boundary.
 const READ: usize = 1 << 14;
 
 impl<'a> Whole<'a> {
     /// Numbers everything.
     ///
     /// # Errors
-    /// When there are too many vertices or a block cannot be read.
+    /// There are too many vertices, or a block cannot be read.
     pub(crate) fn new(
         store: &'a Store,
         progress: &'a dyn Progress,
@@ -79,7 +79,7 @@ impl<'a> Whole<'a> {
     /// Numbers everything as far as walls need it: joints that are open are known, caps are wall.
     ///
     /// # Errors
-    /// When there are too many vertices.
+    /// There are too many vertices.
     pub(crate) fn of_walls(store: &'a Store, progress: &'a dyn Progress, blocks: &Blocks) -> io::Result<Self> {
         let plan = Cow::Owned(Numbering::of(blocks, WALL + 1)?);
         Ok(Self { store, listener: CancelOnly(progress), plan })
@@ -173,10 +173,10 @@ impl<'a> Whole<'a> {
         MeshSize { tets, points, wall_triangles: boundary - cap_triangles, cap_triangles }
     }
 
-    /// The first half of its check, with walls of so many bytes in memory at a time.
+    /// First half of its check. `memory` limits the bytes of walls that are in memory at a time.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     pub(crate) fn look(&self, memory: u64) -> io::Result<Looked<'_>> {
         Looked::at(self, memory as usize)
     }
@@ -199,7 +199,7 @@ impl<'a> Whole<'a> {
     /// The box of a part's boundary.
     ///
     /// # Errors
-    /// When the block cannot be read.
+    /// The block cannot be read.
     pub(crate) fn bounds(&self, part: u32) -> io::Result<Aabb> {
         Ok(self.certificate(part)?.bounds())
     }
@@ -207,7 +207,7 @@ impl<'a> Whole<'a> {
     /// The vertices of every joint, by their numbers in the whole.
     ///
     /// # Errors
-    /// When a block cannot be read.
+    /// A block cannot be read.
     #[cfg(feature = "woven")]
     pub(crate) fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
         let mut all = Vec::with_capacity(self.plan.joined.len());
@@ -245,7 +245,7 @@ impl MeshSource for Whole<'_> {
     fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
         let mut found = Vec::with_capacity(ids.len());
         while let Some(&id) = ids.get(found.len()) {
-            // Of parts that begin with the same number, all but the last have no points of their own.
+            // Of parts that begin with the same number, only the last has points of its own.
             let part = self.plan.parts.partition_point(|part| part.first_point <= id).saturating_sub(1);
             let first = self.plan.parts[part].first_point;
             let points = self.points(part as u32)?;

@@ -255,8 +255,8 @@ impl HalfEdges {
         self.link(y + 1, bc);
     }
 
-    /// True if a collapse preserves the manifold (link condition): the ends share only the two apexes as neighbours,
-    /// and every vertex keeps at least three edges.
+    /// True if a collapse preserves the manifold (link condition). The ends share only the two apexes as neighbours, and
+    /// every vertex keeps at least three edges.
     pub(crate) fn can_collapse(&self, h: u32) -> bool {
         let (a, b) = (self.from(h), self.to(h));
         let common = self.fan(a).filter(|&e| self.joined(self.to(e), b)).count();

@@ -81,7 +81,7 @@ pub enum SurfaceError {
         limit: usize,
     },
     /// The grid is too coarse to resolve a tube.
-    #[error("the grid (cell {voxel}) does not see tube {tube}")]
+    #[error("the grid (cell size {voxel}) is too coarse for tube {tube}")]
     Unresolved {
         /// Index of the tube.
         tube: u32,

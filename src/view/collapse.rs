@@ -87,7 +87,7 @@ impl Collapse {
         self.done()
     }
 
-    /// Reduces very large surfaces without comparing errors: one edge per point in a sweep.
+    /// Reduces the largest surfaces without comparing errors: one edge per point in a sweep.
     fn thin(&mut self, target: usize) {
         let mut near = [Vec::new(), Vec::new()];
         let mut before = usize::MAX;

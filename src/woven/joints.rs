@@ -1,5 +1,7 @@
-//! Smoothing of joints (section 3.2.4 of the paper): Taubin smoothing of the wall around an end surface's rim, then
-//! optimization of the cells inside with the wall fixed.
+//! Smoothing of joints (section 3.2.4 of the paper).
+//!
+//! The first step is Taubin smoothing of the wall around an end surface's rim. The second step optimizes the cells inside
+//! with the wall fixed.
 //!
 //! Each joint owns the tetrahedra within a few rings of its end surface; rings of close joints meet half-way. The sets
 //! are disjoint and shared vertices do not move. Joints are thus processed in parallel, independent of the number of

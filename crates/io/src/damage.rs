@@ -10,7 +10,7 @@ pub(super) struct Damage {
     cut: Option<Index>,
 }
 
-/// Any damage: a byte, some characters or a large number at some places.
+/// Random damage: replacements by a byte, some characters or a large number, at up to a few positions.
 pub(super) fn damage() -> impl Strategy<Value = Damage> {
     let replacement = prop_oneof![
         any::<u8>().prop_map(|b| vec![b]),

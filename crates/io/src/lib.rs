@@ -30,14 +30,14 @@
 //! # A new format
 //!
 //! Each family has a folder for each format. Formats share `file` (paths, whole files), `text` (words and numbers with their
-//! lines), `vtk_xml`, `npy`, and `patches` (names). A new format takes
-//! 1. a folder with `error` (an enum of what can be wrong with such a file), `read` and `write`: from bytes or a path to the
-//!    family's `content` and from there to a stream. It knows neither the other formats nor what paths there are;
+//! lines), `vtk_xml`, `npy`, and `patches` (names). A new format needs
+//! 1. a folder with `error` (an enum of the faults of such a file), `read` and `write`. They convert bytes or a path to
+//!    the family's `content`, and the content to a stream. They depend neither on other formats nor on the list of paths;
 //! 2. a variant of the enum in the family's `format`, with its extensions, and one of the enum of faults in its `error`;
 //! 3. an arm in the family's `read` and in its `write`, which the compiler then asks for.
 //!
-//! A volume mesh is written from passes over a [`MeshSource`](anastomesh_mesh::source::MeshSource), so that memory does not grow
-//! with it; where a format needs the whole, `volume::write` gathers it.
+//! A volume mesh is written in passes over a [`MeshSource`](anastomesh_mesh::source::MeshSource), so that memory does not
+//! grow with the mesh. `volume::write` gathers the whole mesh for formats that need it.
 
 #[cfg(test)]
 mod damage;

@@ -9,9 +9,9 @@ use std::io;
 /// Bins over 0 to 180 degrees.
 const BINS: usize = 36;
 /// Approximate number of tetrahedra sampled. More do not change the histogram visibly.
-const ENOUGH: usize = 2_000_000;
+const SAMPLE_SIZE: usize = 2_000_000;
 
-/// Histogram of dihedral angles. Very large meshes are sampled by evenly spaced parts.
+/// Histogram of dihedral angles. Large meshes are sampled in evenly spaced parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DihedralHistogram([u64; BINS]);
 
@@ -21,7 +21,7 @@ impl DihedralHistogram {
     /// # Errors
     /// Errors of reading the mesh.
     pub fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
-        let stride = mesh.counts().tets.div_ceil(ENOUGH).clamp(1, mesh.parts().max(1) as usize);
+        let stride = mesh.counts().tets.div_ceil(SAMPLE_SIZE).clamp(1, mesh.parts().max(1) as usize);
         let parts: Vec<u32> = (0..mesh.parts()).step_by(stride).collect();
         let counts = parts.par_iter().map(|&part| {
             let corners = mesh.corners_of(&mesh.tets(part)?.tets)?;

@@ -39,7 +39,7 @@ pub enum FacetError {
         second: [u32; 2],
     },
     /// Two of its points coincide, seen along the axis nearest to its normal.
-    #[error("its points {} and {} are at the same place, or one above the other: keep one of them", points[0], points[1])]
+    #[error("its points {} and {} coincide, or coincide in projection: keep one of them", points[0], points[1])]
     Coincident {
         /// The two points.
         points: [u32; 2],

@@ -25,7 +25,7 @@ impl Kept {
         Self { number, count }
     }
 
-    /// Keeps the first `fixed` points, and all that occur in a cell.
+    /// Keeps the first `fixed` points, and all points of cells.
     pub fn used<'a, const N: usize>(
         cells: impl IntoIterator<Item = &'a [u32; N]>,
         points: usize,

@@ -26,7 +26,7 @@
 //!
 //! [`Point3`] and [`Vec3`] are types of `nalgebra`, which is re-exported as [`nalgebra`]. A program that uses
 //! `anastomesh_mesh::nalgebra` needs no dependency of its own and no matching version. A new major version of `nalgebra` (0.x counts
-//! as major) comes only with a new major version of this crate; before 1.0, with a new minor version.
+//! as major) comes only with a new major version of this crate. Before version 1.0 of this crate, a new minor version suffices.
 
 pub mod adjacency;
 pub mod beside;
@@ -113,7 +113,7 @@ pub struct TetMesh {
 /// counter-clockwise.
 pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// A tetrahedral mesh whose boundary is labelled: what the pipeline makes and the writers write.
+/// Tetrahedral mesh with a labelled boundary. The pipeline returns it, and the writers take it.
 ///
 /// ```
 /// use anastomesh_mesh::check::{Expectation, check_volume};

@@ -1,5 +1,7 @@
-//! Repair of a triangle surface without ambiguous choices: merges points at equal positions, removes degenerate and
-//! duplicate triangles, and orients triangles consistently, with the outside in front.
+//! Repair of a triangle surface without ambiguous choices.
+//!
+//! The repair merges points at equal positions and removes degenerate and duplicate triangles. It orients triangles
+//! consistently, with the outside in front.
 //!
 //! All decisions are exact. Holes are not filled, and intersecting parts are not separated.
 

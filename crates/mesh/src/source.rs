@@ -1,5 +1,7 @@
-//! A labelled mesh that is read a part at a time: what writers write and what is checked by its parts, whether the mesh
-//! stands in memory, in a file, or is put together from blocks on the way.
+//! Labelled mesh that is read part by part.
+//!
+//! Writers and the check by parts read such a mesh. It may be in memory, in a file, or assembled from blocks while it is
+//! read.
 
 use std::borrow::Cow;
 use std::io;
@@ -25,7 +27,7 @@ pub struct SourceCounts {
 pub struct TetPiece<'a> {
     /// Vertices, as indices into the whole mesh's points.
     pub tets: Cow<'a, [[u32; 4]]>,
-    /// Block of each tetrahedron; may be empty when blocks are not known, then all are 0.
+    /// Block of each tetrahedron; empty if blocks are unknown, which means 0 for all.
     pub blocks: Cow<'a, [i32]>,
 }
 
@@ -34,9 +36,9 @@ pub struct TetPiece<'a> {
 pub struct FacePiece<'a> {
     /// Vertices, oriented outwards, as indices into the whole mesh's points.
     pub faces: Cow<'a, [[u32; 3]]>,
-    /// Patch of each face; may be empty when the boundary is not labelled, then all are 0.
+    /// Patch of each face; empty if the boundary is not labelled, which means 0 for all.
     pub patches: Cow<'a, [i32]>,
-    /// Block of the tetrahedron under each face; may be empty when blocks are not known, then all are 0.
+    /// Block of the tetrahedron under each face; empty if blocks are unknown, which means 0 for all.
     pub blocks: Cow<'a, [i32]>,
 }
 
@@ -51,9 +53,8 @@ pub struct LabelPiece<'a> {
     pub blocks: Cow<'a, [i32]>,
 }
 
-/// A labelled mesh in parts. What of it is read part by part, in ascending order, is the mesh: its points, its tetrahedra
-/// and its boundary are numbered in this order. Parts may be read at the same time, and over and over again. A mesh that
-/// stands in memory is one part.
+/// Labelled mesh in parts. Its points, tetrahedra and boundary faces are numbered in the order of the parts. Parts may be
+/// read concurrently and repeatedly. A mesh in memory is one part.
 pub trait MeshSource: Sync {
     /// Counts over all parts.
     fn counts(&self) -> SourceCounts;
@@ -64,28 +65,28 @@ pub trait MeshSource: Sync {
     /// Number of parts.
     fn parts(&self) -> u32;
 
-    /// The points that a part adds to those of the parts before it; its tetrahedra may name others.
+    /// Points that a part adds to those of earlier parts. Its tetrahedra may refer to points of all parts.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>>;
 
     /// The tetrahedra of a part.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>>;
 
     /// The boundary faces of a part.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>>;
 
     /// Blocks of [`tets`](Self::tets), without the tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn tet_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let TetPiece { tets, blocks } = self.tets(part)?;
         Ok(LabelPiece { count: tets.len(), blocks, ..LabelPiece::default() })
@@ -94,17 +95,16 @@ pub trait MeshSource: Sync {
     /// Patches and blocks of [`boundary`](Self::boundary), without the faces.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let FacePiece { faces, patches, blocks } = self.boundary(part)?;
         Ok(LabelPiece { count: faces.len(), patches, blocks })
     }
 
-    /// The points of these numbers, which ascend and exist. Sources that can look into the middle of their points do not
-    /// read all of them for it.
+    /// Points with these indices, which must be valid and ascending. Sources with random access read only these points.
     ///
     /// # Errors
-    /// What reading the mesh fails with.
+    /// Errors of reading the mesh.
     fn points_of(&self, ids: &[u32]) -> io::Result<Vec<Point3>> {
         let mut found = Vec::with_capacity(ids.len());
         let mut before = 0;
@@ -117,19 +117,21 @@ pub trait MeshSource: Sync {
         Ok(found)
     }
 
-    /// The whole mesh, when it stands in memory: for formats that cannot be written in passes.
+    /// The whole mesh, if it is in memory. For formats that cannot be written in passes.
     fn whole(&self) -> Option<&VolumeMesh> {
         None
     }
 }
 
-/// Passes over all parts in order. What `each` fails with ends the pass, and a mesh that does not hold as much as it says
-/// fails with `InvalidData`: writers write counts before they see what is counted. A pass may be made inside another one.
+/// Passes over all parts in order. An error of `each` ends the pass.
+///
+/// A mesh with other counts than [`MeshSource::counts`] fails with `InvalidData`, because writers write the counts first.
+/// A pass may run inside another one.
 impl dyn MeshSource + '_ {
     /// Gives all points.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_points(&self, mut each: impl FnMut(&[Point3]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.points(part);
         self.in_order(self.counts().points, read, |points| points.len(), |points| each(points))
@@ -138,7 +140,7 @@ impl dyn MeshSource + '_ {
     /// Gives all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tets(&self, each: impl FnMut(&TetPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().tets, |part| self.tets(part), |piece| piece.tets.len(), each)
     }
@@ -146,7 +148,7 @@ impl dyn MeshSource + '_ {
     /// Gives all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_faces(&self, each: impl FnMut(&FacePiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().boundary, |part| self.boundary(part), |piece| piece.faces.len(), each)
     }
@@ -154,7 +156,7 @@ impl dyn MeshSource + '_ {
     /// Gives the labels of all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tet_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().tets, |part| self.tet_labels(part), |piece| piece.count, each)
     }
@@ -162,7 +164,7 @@ impl dyn MeshSource + '_ {
     /// Gives the labels of all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_face_labels(&self, each: impl FnMut(&LabelPiece) -> io::Result<()>) -> io::Result<()> {
         self.in_order(self.counts().boundary, |part| self.face_labels(part), |piece| piece.count, each)
     }
@@ -170,7 +172,7 @@ impl dyn MeshSource + '_ {
     /// Gives the corners of all tetrahedra.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_tet_corners(&self, mut each: impl FnMut(&[[Point3; 4]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.corners_of(&self.tets(part)?.tets);
         self.in_order(self.counts().tets, read, Vec::len, |corners| each(corners))
@@ -179,7 +181,7 @@ impl dyn MeshSource + '_ {
     /// Gives the corners of all boundary faces.
     ///
     /// # Errors
-    /// What reading the mesh or `each` fails with.
+    /// Errors of reading the mesh or of `each`.
     pub fn each_face_corners(&self, mut each: impl FnMut(&[[Point3; 3]]) -> io::Result<()>) -> io::Result<()> {
         let read = |part| self.corners_of(&self.boundary(part)?.faces);
         self.in_order(self.counts().boundary, read, Vec::len, |corners| each(corners))
@@ -188,7 +190,7 @@ impl dyn MeshSource + '_ {
     /// The corners of cells.
     ///
     /// # Errors
-    /// What reading the mesh fails with; `InvalidData` when a cell names a point that does not exist.
+    /// Errors of reading the mesh; `InvalidData` if a cell refers to a missing point.
     pub fn corners_of<const N: usize>(&self, cells: &[[u32; N]]) -> io::Result<Vec<[Point3; N]>> {
         let mut ids = cells.as_flattened().to_vec();
         ids.sort_unstable();
@@ -201,7 +203,7 @@ impl dyn MeshSource + '_ {
         Ok(cells.iter().map(|cell| cell.map(at)).collect())
     }
 
-    /// As [`each_part`](Self::each_part), with the things counted that are to come.
+    /// As [`each_part`](Self::each_part), and compares the number of items with the expected one.
     pub(super) fn in_order<T: Send>(
         &self,
         expected: usize,
@@ -217,17 +219,17 @@ impl dyn MeshSource + '_ {
         if left == 0 { Ok(()) } else { Err(miscounted()) }
     }
 
-    /// Reads some parts at a time on all threads, and gives what was read in the parts' order.
+    /// Reads several parts at a time on all threads, and passes the results to `each` in the order of the parts.
     ///
     /// # Errors
-    /// What `read` or `each` fails with.
+    /// Errors of `read` or `each`.
     pub fn each_part<T: Send>(
         &self,
         read: impl Fn(u32) -> io::Result<T> + Sync,
         mut each: impl FnMut(T) -> io::Result<()>,
     ) -> io::Result<()> {
-        for first in (0..self.parts()).step_by(AT_A_TIME as usize) {
-            let parts = first..self.parts().min(first + AT_A_TIME);
+        for first in (0..self.parts()).step_by(MAX_HELD_PARTS as usize) {
+            let parts = first..self.parts().min(first + MAX_HELD_PARTS);
             for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
                 each(piece?)?;
             }
@@ -236,18 +238,18 @@ impl dyn MeshSource + '_ {
     }
 }
 
-/// Parts that are held at a time.
-const AT_A_TIME: u32 = 64;
+/// Maximum number of parts in memory at a time.
+const MAX_HELD_PARTS: u32 = 64;
 
-/// A source gave something else than it had announced.
+/// Error of a source whose contents differ from its counts.
 pub fn miscounted() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "the mesh does not hold as much as it says")
+    io::Error::new(io::ErrorKind::InvalidData, "the contents of the mesh differ from its counts")
 }
 
-/// Puts a mesh together in memory.
+/// Assembles a mesh in memory.
 ///
 /// # Errors
-/// What reading the mesh fails with.
+/// Errors of reading the mesh.
 pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
     let counts = source.counts();
     let mut volume = VolumeMesh { patches: source.patches().to_vec(), ..VolumeMesh::default() };
@@ -271,7 +273,7 @@ pub fn gather(source: &dyn MeshSource) -> io::Result<VolumeMesh> {
     Ok(volume)
 }
 
-/// Appends as many values as there are things; those that are not known are 0.
+/// Appends one value per item; unknown values are 0.
 fn extend_or_zero(values: &mut Vec<i32>, piece: &[i32], count: usize) {
     let (before, known) = (values.len(), piece.len().min(count));
     values.extend_from_slice(&piece[..known]);

@@ -1,5 +1,7 @@
-//! Cut conditions of a branch: equations 11 and 12 of the paper, measured along the branch, and a straight part that is
-//! long enough for a connector. Reports and the partition use the same conditions.
+//! Cut conditions of a branch.
+//!
+//! They are equations 11 and 12 of the paper, measured along the branch, and a straight part that is long enough for a
+//! connector. Reports and the partition use the same conditions.
 
 use super::course::{Course, Courses, Way};
 use super::{Adjacency, NodeId, Skeleton};
@@ -177,7 +179,7 @@ impl<'a> Cuttability<'a> {
         Self { adjacency, courses, rules, first, leaving }
     }
 
-    /// Part of a branch that may be cut, or the reason why there is none.
+    /// Returns the part of a branch that may be cut.
     ///
     /// # Errors
     /// [`Uncuttable`]: why the branch has no window.

@@ -1,9 +1,9 @@
 //! Overlaps of vessels.
 //!
-//! Two points of the skeleton overlap if their distance is below the sum of their radii, unless they are close along
-//! the skeleton: vessels always overlap near the junction or bend that joins them. Close means within 3 r on either
-//! side, so at most 6 r apart along the skeleton. Here r is the larger of the two radii, since a thin vessel that
-//! leaves a thick one starts inside it.
+//! Two points of the skeleton overlap if their distance is below the sum of their radii. Points that are close along the
+//! skeleton are excepted, because vessels always overlap near the junction or bend that joins them. Close means within
+//! 3 r on either side, so at most 6 r apart along the skeleton. Here r is the larger of the two radii, since a thin
+//! vessel that leaves a thick one starts inside it.
 
 use super::walk::LocalDistances;
 use super::{Adjacency, EdgeId, NodeId, Skeleton};

@@ -27,7 +27,7 @@ fn cube(n: u32) -> TriMesh {
             }
         }
     }
-    // The squares' corners are there up to six times: one of each stays.
+    // Each corner occurs in up to six squares; the repair merges the copies.
     repair(&soup).surface
 }
 
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .refine(Refinement::default().max_radius_edge(2.0))
         .sizing(Sizing::Constant(0.25))
         .run(&surface)?;
-    // The surface is there as it was: points with their numbers, triangles in their order.
+    // The mesh keeps the surface: the indices of its points and the order of its triangles.
     assert_eq!(made.mesh.points[..surface.points.len()], surface.points);
     assert_eq!(made.faces, surface.triangles);
     assert!(check_tets(&made.mesh, None).failed().next().is_none());

@@ -1,4 +1,4 @@
-//! The library's front door.
+//! Builder of tetrahedralizations: options, runs and results.
 
 use super::certify::Place;
 use super::contacts;
@@ -20,10 +20,9 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use std::sync::Arc;
 
-/// Makes tetrahedral meshes of surfaces, of piecewise linear complexes and of points. See the module's text for an
-/// example.
+/// Tetrahedralizer of surfaces, piecewise linear complexes and points. The crate's page has an example.
 ///
-/// It can be cloned, sent to other threads and used again; runs share nothing.
+/// It can be cloned, sent to other threads and reused. Runs share no state.
 ///
 /// ```
 /// use anastomesh_tet::{Interior, Tetrahedralizer};
@@ -47,21 +46,21 @@ pub struct Tetrahedralizer {
     progress: Option<Arc<dyn Progress + Send>>,
 }
 
-/// A certified mesh, and what it took.
+/// Certified mesh, with a summary of its run.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
-    /// The mesh; its points begin with the input's, in their order and bit for bit, also those that no tetrahedron has.
+    /// The mesh. Its points begin with all points of the input, in their order and bit for bit, including unused ones.
     pub mesh: TetMesh,
-    /// Region of each tetrahedron; empty when there is only one and no seed has given it an id.
+    /// Region of each tetrahedron. Empty for a single region without an id from a seed.
     pub regions: Vec<i32>,
-    /// The triangles of the input, in their order, or their pieces where they were split, without those that are left
-    /// out (`summary.left_out`). Those on the boundary are oriented outwards; those inside as they came.
+    /// Input triangles in their order, or their pieces if they were split. Triangles of `summary.left_out` are omitted.
+    /// Boundary triangles are oriented outwards; interior ones keep their orientation.
     pub faces: Vec<[u32; 3]>,
-    /// Marker of each of `faces`; empty when the input has none.
+    /// Marker of each of `faces`; empty if the input has no markers.
     pub face_markers: Vec<i32>,
-    /// The triangle of the input that each of `faces` is, or is a piece of; empty when each is the one of the same
-    /// number, as it is where none may be split and none is left out.
+    /// Input triangle of each of `faces`, or the one that it is a piece of. Empty if each face is the input triangle of
+    /// the same index, because none was split or left out.
     pub origins: Vec<u32>,
     /// Summary of the run.
     pub summary: Summary,
@@ -79,12 +78,12 @@ pub struct Summary {
     pub refine: Option<RefineReport>,
     /// Number of regions.
     pub regions: usize,
-    /// Triangles of the boundary that came oriented inwards.
+    /// Boundary triangles that were oriented inwards in the input.
     pub reversed: usize,
-    /// Triangles of the input between two tetrahedra.
+    /// Input triangles between two tetrahedra.
     pub interior_faces: usize,
-    /// Triangles and segments of the input that lie outside of what is filled, or in a hole: the mesh does not have
-    /// them. There are none in a strict run.
+    /// Triangles and segments of the input that lie outside the filled region or in a hole. The mesh does not contain
+    /// them. Always empty in a strict run.
     pub left_out: LeftOut,
     /// Result of the layers, if requested.
     pub layers: Option<LayerSummary>,
@@ -108,7 +107,7 @@ impl Default for Tetrahedralizer {
 }
 
 impl Tetrahedralizer {
-    /// For closed surfaces, kept as they are, with a lattice of points inside and the mesh improved.
+    /// Default options: closed surfaces are kept, a lattice of points fills the interior, and the mesh is improved.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -142,15 +141,14 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Permission to split the triangles of the input.
+    /// Allows splitting of input triangles.
     #[must_use]
     pub fn boundary(mut self, boundary: Boundary) -> Self {
         self.boundary = boundary;
         self
     }
 
-    /// Layers of thin tetrahedra along a closed surface, in place of the same as everywhere. What else is asked for holds inside
-    /// of them.
+    /// Layers of thin tetrahedra along a closed surface. All other options apply to the region inside the layers.
     #[must_use]
     pub fn layers(mut self, layers: impl Into<Option<Layers>>) -> Self {
         self.layers = layers.into();
@@ -171,8 +169,8 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Makes triangles and segments with the outside, or holes, on all their sides an error,
-    /// [`TetError::Outside`]. Otherwise they are left out, and the summary lists them; their points stay, unused.
+    /// Fails with [`TetError::Outside`] if triangles or segments have only the outside or holes on all their sides.
+    /// Otherwise they are left out and listed in the summary. Their points remain in the mesh, unused.
     #[must_use]
     pub fn strict(mut self, strict: bool) -> Self {
         self.strict = strict;
@@ -186,8 +184,8 @@ impl Tetrahedralizer {
         self
     }
 
-    /// The refinement and the sizing asked for.
-    pub(super) fn wishes(&self) -> (Option<&Refinement>, &Sizing) {
+    /// Requested refinement and sizing.
+    pub(super) fn refinement_and_sizing(&self) -> (Option<&Refinement>, &Sizing) {
         (self.refinement.as_ref(), &self.sizing)
     }
 
@@ -195,11 +193,11 @@ impl Tetrahedralizer {
         self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
     }
 
-    /// Makes a mesh of a surface (`&TriMesh`) or a complex (`&Plc`), neither of which is copied. Success means that the mesh
-    /// has passed the certificate: each triangle of the input on or in the filled volume is a face of it.
+    /// Meshes a surface (`&TriMesh`) or a complex (`&Plc`) without copying it. A returned mesh has passed the certificate:
+    /// each input triangle on or in the filled volume is one of its faces.
     ///
     /// # Errors
-    /// [`TetError`]: what is wrong with the input, or what could not be recovered.
+    /// [`TetError`]: the fault of the input, or the part that could not be recovered.
     pub fn run<'a>(&self, input: impl Into<PlcRef<'a>>) -> Result<Tetrahedralization, TetError> {
         self.run_borrowed(input.into())
     }
@@ -277,9 +275,11 @@ impl Tetrahedralizer {
         }
     }
 
-    /// Checks an input without meshing it: all that [`Tetrahedralizer::run`] checks, and that no points coincide, no
-    /// triangle is there twice, no two triangles meet but in common vertices and edges, and no further point lies in a
-    /// triangle. Segments are not tested against triangles.
+    /// Checks an input without meshing it.
+    ///
+    /// It makes all checks of [`Tetrahedralizer::run`], and verifies that no points coincide and no triangle is
+    /// duplicated. Triangles may intersect only in common vertices and edges, and no other point may lie in a triangle.
+    /// Segments are not tested against triangles.
     ///
     /// ```
     /// use anastomesh_tet::{EdgeFaults, TetError, Tetrahedralizer};
@@ -307,9 +307,10 @@ impl Tetrahedralizer {
         watch.report(Stage::Validate, 1, 1)
     }
 
-    /// The Delaunay tetrahedralization of points. `faces` are those of the convex hull. Success means that it has passed a certificate:
-    /// every tetrahedron is positive, tetrahedra meet face to face and fill the convex hull of the points without overlaps.
-    /// Empty spheres are not part of the certificate.
+    /// Returns the Delaunay tetrahedralization of points. `faces` are those of the convex hull.
+    ///
+    /// A returned mesh has passed a certificate: every tetrahedron is positive, and tetrahedra meet face to face. They
+    /// fill the convex hull of the points without overlaps. Empty spheres are not part of the certificate.
     ///
     /// ```
     /// use anastomesh_mesh::Point3;
@@ -336,12 +337,12 @@ impl Tetrahedralizer {
     }
 }
 
-/// Fills a closed surface that is oriented outwards, with the interior, the improvement and the effort that the
-/// tetrahedralizer has. The points of the mesh begin with those of the surface. There is no certificate: callers check what they
-/// make of the mesh.
+/// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.
+///
+/// The points of the mesh begin with those of the surface. The mesh has no certificate; callers check their final mesh.
 ///
 /// # Errors
-/// [`TetError`]; [`TetError::Cancelled`] when the watch says so.
+/// [`TetError`]; [`TetError::Cancelled`] if the watch asks to stop.
 pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<TetMesh, TetError> {
     let edges = input::validate(surface, &[], InputKind::Closed)?;
     input::outward(surface)?;

@@ -1,4 +1,4 @@
-//! The certificate: what has to hold before a mesh may be called the tetrahedralization of a surface.
+//! Certificate: exact conditions that make a mesh the tetrahedralization of a surface.
 
 use super::complex::{face_key, face_of};
 use super::plc::InputKind;
@@ -35,7 +35,7 @@ pub enum CertifyError {
         vertices: [u32; 4],
     },
     /// Two tetrahedra on the same side of a face, or three at one face.
-    #[error("face {face:?} is not shared properly")]
+    #[error("face {face:?} is shared by more than two tetrahedra, or by two on the same side")]
     NotConforming {
         /// Vertices of the face.
         face: [u32; 3],
@@ -65,7 +65,7 @@ pub enum CertifyError {
         segment: u32,
     },
     /// An item that was left out as lying outside is a face or an edge of the mesh.
-    #[error("item {id} of the {part} of the input was left out, and the mesh has it")]
+    #[error("{} {id} of the input was left out, but the mesh contains it", part.noun())]
     NotOutside {
         /// Triangle or segment.
         part: InputPart,
@@ -109,7 +109,7 @@ pub enum CertifyError {
 }
 
 impl CertifyError {
-    /// The same error of a tetrahedralization of points with other vertex numbers.
+    /// Replaces the vertex numbers in the error of a tetrahedralization of points.
     pub(super) fn renamed(self, name: impl Fn(u32) -> u32) -> Self {
         match self {
             Self::NotPositive { tet, vertices } => Self::NotPositive { tet, vertices: vertices.map(name) },
@@ -121,9 +121,13 @@ impl CertifyError {
     }
 }
 
-/// Proves that `mesh` fills `surface`: its points begin with the surface's, bit for bit; every tetrahedron is positive
-/// by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; the boundary is the surface,
-/// triangle for triangle, with the same orientation; the volumes agree to rounding.
+/// Proves that `mesh` fills `surface`.
+///
+/// - The points of the mesh begin with those of the surface, bit for bit.
+/// - Every tetrahedron is positive by the exact predicate.
+/// - Two tetrahedra on opposite sides share each interior face.
+/// - The boundary is the surface, triangle for triangle, with the same orientation.
+/// - The volumes agree to rounding.
 ///
 /// ```
 /// use anastomesh_tet::{Tetrahedralizer, certify};
@@ -157,11 +161,15 @@ pub enum Place {
     Inside,
 }
 
-/// Proves that `mesh` keeps the triangles of `facets`: its points begin with theirs, bit for bit; every tetrahedron is
-/// positive by the exact predicate; interior faces are shared by two tetrahedra on opposite sides; every boundary face
-/// is a triangle of `facets`, turned either way, and every triangle is a face, for [`InputKind::Closed`] on the
-/// boundary; faces between tetrahedra of different `regions` (one for each tetrahedron, or none) are triangles; the
-/// volumes of the mesh and of what its boundary encloses agree to rounding. Returns where the triangles are.
+/// Proves that `mesh` contains the triangles of `facets`, and returns their positions.
+///
+/// - The points of the mesh begin with those of `facets`, bit for bit.
+/// - Every tetrahedron is positive by the exact predicate.
+/// - Two tetrahedra on opposite sides share each interior face.
+/// - Every boundary face is a triangle of `facets`, in either orientation.
+/// - Every triangle is a face of the mesh, and a boundary face for [`InputKind::Closed`].
+/// - Faces between tetrahedra of different `regions` (one for each tetrahedron, or none) are triangles of `facets`.
+/// - The volume of the mesh and the volume enclosed by its boundary agree to rounding.
 ///
 /// # Errors
 /// The first of these that does not hold.
@@ -353,7 +361,8 @@ pub fn enclosed_volume(surface: &TriMesh) -> (f64, f64) {
     signed_volume(surface, |_| 1.0)
 }
 
-/// The sum over triangles of the lengths of what a term of the volume is made of, multiplied.
+/// Sum over triangles of the product of the distances of their vertices from the first point. It bounds the volume
+/// terms.
 fn spanned(surface: &TriMesh) -> f64 {
     let Some(&origin) = surface.points.first() else { return 0.0 };
     let term = |t: &[u32; 3]| t.iter().map(|&i| (surface.points[i as usize] - origin).norm()).product::<f64>();

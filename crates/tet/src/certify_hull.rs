@@ -1,26 +1,30 @@
-//! The certificate of a tetrahedralization of points: its tetrahedra fill the convex hull of the points, each place once.
+//! Certificate of a tetrahedralization of points: its tetrahedra fill the convex hull of the points exactly once.
 //!
-//! The neighbours that a [`Complex`] keeps are a witness: each is checked, none is trusted, and none is searched for. Positive
-//! tetrahedra whose faces are glued in pairs cover a place as often as the hull's faces wind around it. All hull faces have
-//! one tetrahedron on their inner side, so they wind around its interior as often as a ray from there crosses them. If that
-//! is once, the hull bounds a star-shaped solid that is covered once; if no dihedral angle exceeds π, the solid is convex.
+//! The stored neighbours of a [`Complex`] serve as a witness: the pass verifies each of them and searches for none. Positive
+//! tetrahedra whose faces are glued in pairs cover a point as often as the hull's faces wind around it. All hull faces have
+//! one common tetrahedron on their inner side. They wind around its interior as often as a ray from there crosses them. If
+//! the ray crosses once, the hull bounds a star-shaped solid that is covered once. If no dihedral angle exceeds π, the solid
+//! is convex.
 //! (Mehlhorn et al., 'Checking geometric programs or verification of geometric structures', 1999.) No two tetrahedra
-//! overlap then, which excludes repeated tetrahedra, repeated points and faces of three tetrahedra.
+//! overlap then. This excludes repeated tetrahedra, repeated points and faces of three tetrahedra.
 
 use super::certify::CertifyError;
 use super::complex::{Cell, Complex, face_of, opposed};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{orient2d, orient3d};
 
-/// Proves that the tetrahedra of a complex fill the convex hull of its points; returns the faces of the hull, oriented
-/// outwards. One pass over the tetrahedra and one over the ghosts, without a copy of either.
+/// Proves that the tetrahedra of a complex fill the convex hull of its points, and returns the outward faces of the hull.
 ///
-/// Every tetrahedron is positive by the exact predicate. Every face is glued to one other, which has the same vertices and lies
-/// on the other side, both ways. Every point has a tetrahedron. The faces of the hull, each under a ghost, are a convex
-/// surface by exact predicates, and go once around the tetrahedra.
+/// One pass over the tetrahedra and one over the ghosts, without copies, verify these conditions:
+///
+/// - Every tetrahedron is positive by the exact predicate.
+/// - Every face is glued mutually to one face with the same vertices on the other side.
+/// - Every point has a tetrahedron.
+/// - The faces of the hull, each under a ghost, form a convex surface by exact predicates.
+/// - That surface winds once around the tetrahedra.
 ///
 /// # Errors
-/// The first of these that does not hold.
+/// The first violated condition.
 pub fn certify_hull(c: &Complex) -> Result<Vec<[u32; 3]>, CertifyError> {
     let hull = check_gluing(c)?;
     check_convexity(c, &hull)?;
@@ -28,8 +32,8 @@ pub fn certify_hull(c: &Complex) -> Result<Vec<[u32; 3]>, CertifyError> {
     Ok(hull.iter().map(|&half| c.face(half)).collect())
 }
 
-/// Cells whose points and neighbours are fetched before the first of them is checked: the processor waits for many at once then.
-/// A block of 16 KiB stays in the first-level cache.
+/// Number of cells whose points and neighbours are fetched before the first one is checked, so that memory latencies
+/// overlap. A block of 16 KiB stays in the first-level cache.
 const BLOCK: usize = 64;
 
 /// Checks tetrahedra, ghosts and their neighbours; returns the half-faces under the ghosts in ascending order.
@@ -52,7 +56,7 @@ struct Pass<'a> {
     /// Half-faces whose mates point back at them.
     glued: usize,
     corners: [[Point3; 4]; BLOCK],
-    /// Of each glued pair the upper half-face, its mate, and the cell of the mate.
+    /// Upper half-face of each glued pair, its mate, and the cell of the mate.
     pairs: Vec<(u32, u32)>,
     others: Vec<Cell>,
 }
@@ -141,7 +145,7 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// A half-face that its mate does not point back at. Mates below their half-faces do.
+/// First half-face whose mate does not refer back to it. Mates below their half-faces have been checked.
 fn one_sided(c: &Complex) -> Option<u32> {
     let alive = (0..c.slots() as u32).filter(|&t| c.is_alive(t));
     let points_back = |half: u32, mate: u32| (mate >> 2) < c.slots() as u32 && c.mate(mate) == half && mate != half;
@@ -168,7 +172,7 @@ fn side_of(c: &Complex, half: u32, v: u32) -> f64 {
     orient3d(p, q, r, &c.points[v as usize])
 }
 
-/// Checks that the hull goes once around the first tetrahedron.
+/// Checks that the hull winds once around the first tetrahedron.
 fn check_winding(c: &Complex, hull: &[u32]) -> Result<(), CertifyError> {
     let Some(tet) = c.real_tets().next() else { return Ok(()) };
     let vertices = c.verts(tet);

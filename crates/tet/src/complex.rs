@@ -54,7 +54,7 @@ pub enum ComplexError {
         face: [u32; 3],
     },
     /// Half-faces that are not mutual mates, or that are different faces.
-    #[error("face {face} of tetrahedron {tet} is not glued properly")]
+    #[error("face {face} of tetrahedron {tet} does not match that of its neighbour")]
     NotGlued {
         /// The tetrahedron.
         tet: u32,

@@ -65,24 +65,25 @@ fn exactly(
 ) -> Result<(Complex, RecoverySummary), TetError> {
     let flat = flat_height(&r.surface.points);
     let single = flat_height_in_single(&r.surface.points);
-    let go_on = |ways: &[RecoveryStrategy]| go_on(r, complex, points.len(), missing, (ways, flat));
-    let anew_in = |flat, ways: &[RecoveryStrategy]| anew(r, points, flat, ways);
-    let anew = |flat| anew_in(flat, &RecoveryStrategy::TURNED);
+    let continue_recovery =
+        |ways: &[RecoveryStrategy]| continue_recovery(r, complex, points.len(), missing, (ways, flat));
+    let restart_with = |flat, ways: &[RecoveryStrategy]| restart(r, points, flat, ways);
+    let restart = |flat| restart_with(flat, &RecoveryStrategy::TURNED);
     let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
     let planes = lies_in_planes(r.surface, missing.edges, flat);
     let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
     let first = match rounded {
-        Some(coarse) => anew(coarse),
-        None if turned => anew(flat),
-        None => go_on(&RecoveryStrategy::FIRST),
+        Some(coarse) => restart(coarse),
+        None if turned => restart(flat),
+        None => continue_recovery(&RecoveryStrategy::FIRST),
     };
-    let second = again(first, || match single.filter(|_| rounded.is_none()) {
-        Some(coarse) => anew(coarse),
-        None if turned || rounded.is_some() => go_on(&RecoveryStrategy::FIRST),
-        None => anew(flat),
+    let second = or_retry(first, || match single.filter(|_| rounded.is_none()) {
+        Some(coarse) => restart(coarse),
+        None if turned || rounded.is_some() => continue_recovery(&RecoveryStrategy::FIRST),
+        None => restart(flat),
     });
-    let third = again(second, || go_on(&RecoveryStrategy::OTHERS));
-    again(third, || anew_in(rounded.unwrap_or(flat), &RecoveryStrategy::LAST))
+    let third = or_retry(second, || continue_recovery(&RecoveryStrategy::OTHERS));
+    or_retry(third, || restart_with(rounded.unwrap_or(flat), &RecoveryStrategy::LAST))
 }
 
 /// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
@@ -92,12 +93,12 @@ fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
 }
 
 /// Tries another strategy after an error that may depend on the strategy.
-fn again<T>(result: Result<T, TetError>, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
+fn or_retry<T>(result: Result<T, TetError>, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
     if matches!(result, Err(TetError::Stuck { .. })) { other() } else { result }
 }
 
 /// Continues exact recovery in the complex left by flips, with the given strategies.
-fn go_on(
+fn continue_recovery(
     r: &Request,
     complex: &Complex,
     points: usize,
@@ -111,7 +112,7 @@ fn go_on(
 }
 
 /// Restarts with flips that make nothing thinner than `flat`, then continues with the given strategies.
-fn anew(
+fn restart(
     r: &Request,
     points: &[Point3],
     flat: f64,
@@ -122,7 +123,7 @@ fn anew(
         Ok(summary) => Ok((complex, summary)),
         Err(TetError::NotRecovered { edges, triangles }) => {
             let missing = Missing { edges: &edges, triangles: &triangles };
-            go_on(r, &complex, points.len(), missing, (ways, flat))
+            continue_recovery(r, &complex, points.len(), missing, (ways, flat))
         }
         Err(error) => Err(error),
     }

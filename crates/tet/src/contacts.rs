@@ -9,7 +9,7 @@ use anastomesh_mesh::geometry::predicates::{collinear, orient2d, orient3d};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Contact, Point3, classify};
 
 /// Pairs tested after which counting ends if an intersection has been found.
-const ENOUGH: usize = 20_000_000;
+const MAX_PAIRS_AFTER_HIT: usize = 20_000_000;
 
 /// Pairs tested after which the search ends in any case. Only triangles with mutually overlapping boxes reach this.
 const MOST: usize = 2_000_000_000;
@@ -33,7 +33,7 @@ pub(super) fn no_contacts(surface: &TriMesh, watch: &Watch) -> Result<(), TetErr
     Err(TetError::SelfIntersection { pairs: found.named, count: found.count, complete })
 }
 
-/// Pairs of intersecting triangles; incomplete if there are very many.
+/// Pairs of intersecting triangles; incomplete if their number exceeds the limit.
 pub(super) fn contacts(surface: &TriMesh) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     // Without a watch, nothing is cancelled.
@@ -69,7 +69,7 @@ fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2]
                 found([i as u32, j]);
             }
         }
-        if tests > MOST || (tests > ENOUGH && any) {
+        if tests > MOST || (tests > MAX_PAIRS_AFTER_HIT && any) {
             return Ok(i + 1 == boxes.len());
         }
     }
@@ -91,7 +91,7 @@ pub(super) fn no_points_in_triangles(surface: &TriMesh) -> Result<(), TetError> 
         let mut met = None;
         tree.query(&Aabb::of_points([p]), |t| {
             let corners = triangles[t as usize].map(|v| &points[v as usize]);
-            met = met.or_else(|| place_in(corners, p).map(|place| (triangles[t as usize], place)));
+            met = met.or_else(|| locate_in_triangle(corners, p).map(|place| (triangles[t as usize], place)));
         });
         if let Some((triangle, place)) = met {
             return Err(match place {
@@ -126,7 +126,7 @@ enum TrianglePlace {
 }
 
 /// Exact position of a point in a triangle with area; `None` if it is outside.
-fn place_in([a, b, c]: [&Point3; 3], p: &Point3) -> Option<TrianglePlace> {
+fn locate_in_triangle([a, b, c]: [&Point3; 3], p: &Point3) -> Option<TrianglePlace> {
     if orient3d(a, b, c, p) != 0.0 {
         return None;
     }

@@ -1,4 +1,4 @@
-//! Splitting of corner tetrahedra: those with two faces on the boundary, as they are where a wall meets a cap.
+//! Splitting of corner tetrahedra, which have two faces on the boundary. They occur where a wall meets a cap.
 //!
 //! All four vertices of a corner tetrahedron are on the boundary. Linear finite elements have no unknown inside it, and
 //! finite volume solvers find its face matrix nearly singular. Either a flip replaces one of its inner faces by an edge, or
@@ -24,8 +24,8 @@ const STEPS: [f64; 3] = [0.2, 0.5, 1.0];
 /// Positions to try for a new vertex, as shares of the distance from the edge's midpoint to the centre of its link.
 const LINK_SHARES: [f64; 4] = [0.0, 0.15, 0.3, 0.5];
 
-/// Changes the tetrahedra of a filled surface until none, or few, have two boundary faces. `outer` tells of each triangle
-/// whether it belongs to the boundary of the final mesh. The surface and the numbers of its vertices stay as they are.
+/// Changes the tetrahedra of a filled surface until none, or few, have two boundary faces. `outer` is true for triangles on
+/// the boundary of the final mesh. The surface and its vertex indices do not change.
 pub fn split_corner_tets(mesh: &mut TetMesh, surface: &TriMesh, outer: impl Fn(usize) -> bool) {
     let outer = surface.triangles.iter().enumerate().filter(|(i, _)| outer(*i));
     let faces: FxHashSet<[u32; 3]> = outer.map(|(_, &triangle)| face_key(triangle)).collect();
@@ -142,7 +142,7 @@ struct LocalChange {
 }
 
 impl LocalChange {
-    /// Chooses the best of some positions for the new vertex; none when no position makes all tetrahedra positive.
+    /// Chooses the best of some positions for the new vertex. `None` if no position makes all tetrahedra positive.
     fn with_vertex(mesh: &TetMesh, old: Vec<usize>, new: Vec<[u32; 4]>, positions: &[Point3]) -> Option<Self> {
         let mut best = None;
         for &position in positions {
@@ -203,7 +203,7 @@ impl CornerIncidence {
         Some(LocalChange { old: vec![corner.tet, behind], new, vertex: None, worst })
     }
 
-    /// Splits an edge and each tetrahedron around it in two; none when the edge is on the surface.
+    /// Splits an edge and each tetrahedron around it in two. `None` if the edge is on the surface.
     fn split(&self, mesh: &TetMesh, edge: [u32; 2]) -> Option<LocalChange> {
         let ring = self.around.get(&edge)?;
         let mut link: Vec<u32> = ring.iter().flat_map(|&t| mesh.tets[t]).filter(|v| !edge.contains(v)).collect();
@@ -230,8 +230,8 @@ fn split_tet(mesh: &TetMesh, tet: usize) -> Option<LocalChange> {
     LocalChange::with_vertex(mesh, vec![tet], quarters, &[Point3::from(sum / 4.0)])
 }
 
-/// The smallest radius ratio of tetrahedra, with the next vertex where it is said to be; none when it is not above a bound, or
-/// one of them is not positive.
+/// Smallest radius ratio of tetrahedra, with the next vertex at `next`. `None` if it is at most `above`, or if a
+/// tetrahedron is not positive.
 fn worst(mesh: &TetMesh, tets: &[[u32; 4]], next: Option<Point3>, above: f64) -> Option<f64> {
     let corners = |tet: &[u32; 4]| tet.map(|v| mesh.points.get(v as usize).copied().or(next).unwrap_or_default());
     let mut worst = f64::INFINITY;

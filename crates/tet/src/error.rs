@@ -8,20 +8,20 @@ use anastomesh_mesh::budget::{OverBudget, Stop};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::units::counted;
 
-/// A part of the surface that another part meets; ids are those of the surface's points.
+/// Part of the surface that another part intersects. Ids are those of the surface's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// A triangle, met in its inside.
+    /// A triangle, intersected in its interior.
     Triangle([u32; 3]),
-    /// An edge, met between its ends.
+    /// An edge, intersected between its ends.
     Edge([u32; 2]),
     /// A point.
     Point(u32),
 }
 
 impl Obstacle {
-    /// Replaces a triangle by its form in the input: a face of a complex may begin with another of its corners.
+    /// Replaces a triangle by its form in the input, because a face of a complex may begin with another corner.
     pub(super) fn as_given(self, triangles: &[[u32; 3]]) -> Self {
         let Self::Triangle(face) = self else { return self };
         let key = face_key(face);
@@ -39,11 +39,11 @@ impl std::fmt::Display for Obstacle {
     }
 }
 
-/// Offenders that an error names; it counts all of them.
+/// Maximum number of offenders that an error lists; it counts all of them.
 pub(super) const NAMED: usize = 10;
 
-/// The ids of the first offenders, as a sentence has them. What follows itself is named once: pieces of one polygon have
-/// its number.
+/// Lists the ids of the first offenders as text. Repeated ids are listed once, because the pieces of a polygon have its
+/// number.
 fn list<T: std::fmt::Debug + PartialEq>(ids: &[T], count: usize) -> String {
     list_as(ids, count, |id| format!("{id:?}"))
 }
@@ -87,7 +87,7 @@ fn twice(pairs: &[[u32; 2]], count: usize) -> String {
     }
 }
 
-/// An array of the input with one value for each of something else.
+/// Array of the input with one value per point or triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InputArray {
@@ -146,19 +146,19 @@ impl std::fmt::Display for LayersConflict {
     }
 }
 
-/// Why the exact tier of recovery has to leave a part of the surface.
+/// Reasons for which exact recovery fails at a part of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stuck {
     /// The surface intersects itself there.
     Intersection,
-    /// No place for a vertex was found off the parts of the surface that meet there; that proves nothing.
+    /// No position for a vertex was found between the parts of the surface that meet there, although one may exist.
     Precision,
-    /// The edge has fewer than two triangles, and no room was found beside it.
+    /// The edge has fewer than two triangles, and no position for a vertex was found beside it.
     Dangling,
     /// The budget of work was used up.
     Budget,
-    /// Layers at a triangle of the wall would turn over, and its corners may be nowhere else.
+    /// Layers at a triangle of the wall would invert, and its corners cannot move.
     Layer,
 }
 
@@ -176,13 +176,13 @@ impl std::fmt::Display for Stuck {
     }
 }
 
-/// Why there is no tetrahedral mesh. Ids are those of the input's points and triangles, in ascending order; the first
-/// ten are named, `count` is that of all.
+/// Errors of the tetrahedralizer. Ids are those of the input's points and triangles, in ascending order. The first ten are
+/// listed, and `count` counts all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TetError {
     /// No points or no triangles.
-    #[error("nothing to tetrahedralize: {points} points, {triangles} triangles")]
+    #[error("nothing to tetrahedralize: {}, {}", counted(*points, "point"), counted(*triangles, "triangle"))]
     Empty {
         /// Number of points.
         points: usize,
@@ -263,14 +263,14 @@ pub enum TetError {
         /// Number of triangles that repeat an earlier one.
         count: usize,
     },
-    /// An array that has to have a value for each of something else has not.
-    #[error("{found} {array} given, expected {expected}")]
+    /// An array of the input has the wrong length.
+    #[error("the number of {array} is {found}, expected {expected}")]
     WrongLength {
         /// The array.
         array: InputArray,
-        /// Its length.
+        /// Length found.
         found: usize,
-        /// The length it has to have.
+        /// Required length.
         expected: usize,
     },
     /// Edges that only one triangle has.
@@ -282,7 +282,7 @@ pub enum TetError {
     /// Edges that more than two triangles share.
     #[error("the surface is not manifold: {}", .0.text("at edges with more than two triangles"))]
     NotManifold(EdgeFaults),
-    /// Two triangles run through an edge in the same direction.
+    /// Two triangles have a common edge in the same direction.
     #[error("the surface is not consistently oriented: {}", .0.text("with a neighbour of opposite orientation"))]
     NotOriented(EdgeFaults),
     /// The surface encloses a negative volume: its triangles face inwards. [`Tetrahedralizer::run`](crate::Tetrahedralizer::run)
@@ -324,10 +324,10 @@ pub enum TetError {
         /// Its value.
         value: f64,
     },
-    /// Layers that cannot be.
+    /// The parameters of layers are invalid.
     #[error(transparent)]
     Layers(#[from] LayersError),
-    /// Layers are put along closed surfaces that stay as they are, and nothing else.
+    /// Layers need a closed surface with a fixed boundary.
     #[error("layers need a closed surface with a fixed boundary: {0}")]
     LayersAlong(LayersConflict),
     /// The surface intersects itself: pairs of triangles intersect outside shared vertices and edges.
@@ -367,17 +367,17 @@ pub enum TetError {
         /// Why.
         reason: Stuck,
     },
-    /// A triangle of a closed surface has the inside, or the outside, on both of its sides.
+    /// A triangle of a closed surface has the inside on both of its sides, or the outside.
     #[error("triangle {triangle} does not separate inside from outside")]
     NotSeparating {
         /// The triangle.
         triangle: u32,
     },
-    /// The facets enclose nothing: all of space is reached from infinity or from a hole without crossing one.
+    /// The facets enclose nothing: infinity or a hole reaches all of space without crossing a facet.
     #[error("the facets enclose no volume")]
     NothingEnclosed,
     /// Facets or segments that are not part of the volume: both sides of the facet lie outside or in a hole.
-    #[error("{count} {part} lie outside the filled region: {}", list(ids, *count))]
+    #[error("{} outside the filled region: {}", counted(*count, part.noun()), list(ids, *count))]
     Outside {
         /// Triangles or segments.
         part: InputPart,

@@ -175,7 +175,7 @@ impl Flipper {
     }
 
     /// Tetrahedra that the planned change would remove.
-    pub fn doomed(&self) -> &[u32] {
+    pub fn removed_tets(&self) -> &[u32] {
         &self.old
     }
 

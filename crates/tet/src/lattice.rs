@@ -327,8 +327,8 @@ impl Columns {
 }
 
 impl Column {
-    /// Bit mask of the points of the lattice with cubes `2^level` times as large: indices are multiples of that, all
-    /// three even or all three odd ones.
+    /// Bit mask of the points of the lattice with cubes `2^level` times as large. Their indices are multiples of
+    /// `2^level`: three even multiples or three odd ones.
     fn points_of_level(&self, level: u32) -> u64 {
         let step = 1 << level;
         if self.i % step != 0 || self.j % step != 0 || (self.i ^ self.j) & step != 0 {

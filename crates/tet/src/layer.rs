@@ -14,25 +14,25 @@
 pub struct Layers {
     /// Number of layers.
     pub count: u32,
-    /// Thickness of each layer over that of the one before it, from the wall on.
+    /// Ratio of the thickness of each layer to that of the previous one, from the wall inwards.
     pub growth: f64,
-    /// Thickness of all layers together, as a share of the radius; for surfaces that are no vessels, of the half width.
+    /// Total thickness of all layers, as a fraction of the vessel radius. For other surfaces, of the local half width.
     pub thickness: f64,
 }
 
 anastomesh_mesh::setters!(Layers { count: u32, growth: f64, thickness: f64 });
 
-/// Layers that cannot be.
+/// Invalid parameters of layers.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayersError {
-    /// Too few or too many.
+    /// The number of layers is out of range.
     #[error("invalid number of layers {0}: give 1 to {most}", most = Layers::MOST)]
     Count(u32),
-    /// A growth outside of what makes sense.
+    /// The growth is out of range.
     #[error("layer growth {0} is out of range: give {least} to {most}", least = Layers::GROWTH[0], most = Layers::GROWTH[1])]
     Growth(f64),
-    /// All layers together are thicker than what they are in, or have no thickness.
+    /// The total thickness is zero, or too large for the vessel.
     #[error(
         "total layer thickness {0} (fraction of the radius) is out of range: give {least} to {most}",
         least = Layers::THICKNESS[0], most = Layers::THICKNESS[1]
@@ -40,7 +40,7 @@ pub enum LayersError {
     Thickness(f64),
     /// The thinnest of them is too thin.
     #[error(
-        "the thinnest of {count} layers would have {thinnest:.1e} of the radius, at least {} is required: give fewer or thicker layers, \
+        "number of layers {count}: the thinnest would have {thinnest:.1e} of the radius, at least {} is required: give fewer or thicker layers, \
          or a growth closer to 1",
         Layers::THINNEST
     )]
@@ -60,7 +60,7 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Most layers.
+    /// Maximum number of layers.
     pub const MOST: u32 = 30;
     /// Limits of the growth.
     pub const GROWTH: [f64; 2] = [0.2, 5.0];

@@ -1,17 +1,17 @@
-//! Errors told with the ids of their reader: those of a file, say, whose polygons were cut into triangles.
+//! Translation of the ids in errors to those of the caller, such as polygon numbers in a file.
 
 use super::error::{Obstacle, TetError};
 use super::plc::InputPart;
 
 /// Names of the items of an input, for instance in its file.
 pub trait Names {
-    /// The number of a point.
+    /// Returns the number of a point.
     fn point(&self, id: u32) -> u32;
 
-    /// The number of a triangle, or of what it is a piece of.
+    /// Returns the number of a triangle, or of the polygon that it is a piece of.
     fn triangle(&self, id: u32) -> u32;
 
-    /// The number of the seed of a hole or region.
+    /// Returns the number of the seed of a hole or region.
     fn seed(&self, index: u32) -> u32 {
         index
     }

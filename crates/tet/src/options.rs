@@ -7,27 +7,27 @@ use std::sync::Arc;
 /// Interior points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Interior {
-    /// None but those that recovery needs.
+    /// Only points that recovery needs.
     None,
-    /// A body-centred cubic lattice; lengths in the unit of the surface.
+    /// Body-centred cubic lattice; lengths in the unit of the surface.
     Lattice {
-        /// Side of the cubes; none: 1.4 mean edge lengths of the surface.
+        /// Side of the cubes; `None`: 1.4 mean edge lengths of the surface.
         cell: Option<f64>,
-        /// Distance kept from the wall; none: 0.45 mean edge lengths of the surface.
+        /// Minimum distance from the wall; `None`: 0.45 mean edge lengths of the surface.
         clearance: Option<f64>,
     },
-    /// A lattice whose cubes grow away from the wall; lengths as for `Lattice`, the side is that of the smallest cubes.
+    /// Lattice whose cubes grow away from the wall. Lengths have the units and defaults of `Lattice`.
     Graded {
         /// Side of the cubes next to the wall.
         cell: Option<f64>,
-        /// Distance kept from the wall.
+        /// Minimum distance from the wall.
         clearance: Option<f64>,
     },
-    /// As `Graded`, with cubes that follow the surface: lengths are in edge lengths of the surface nearby.
+    /// As `Graded`, with cube sizes that follow the surface. Lengths are in edge lengths of the nearby surface.
     Local {
         /// Side of the cubes next to the wall.
         cell: f64,
-        /// Distance kept from the wall.
+        /// Minimum distance from the wall.
         clearance: f64,
     },
     /// These points; those outside the surface are dropped.
@@ -45,14 +45,14 @@ pub enum Interior {
 /// ```
 #[derive(Clone, Default)]
 pub enum Sizing {
-    /// As the surface has them nearby.
+    /// Edge length of the nearby surface.
     #[default]
     Surface,
     /// Uniform length.
     Constant(f64),
-    /// Given at each point of the input, interpolated between them.
+    /// Lengths at the points of the input, interpolated between them.
     PerVertex(Vec<f64>),
-    /// Given by a function of the place.
+    /// Function of the position.
     Function(Arc<dyn Fn(&Point3) -> f64 + Send + Sync>),
 }
 
@@ -81,42 +81,43 @@ impl std::fmt::Debug for Sizing {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
-    /// Bounds on its shape and volume.
+    /// Bounds on the shape and volume of tetrahedra.
     pub bounds: Bounds,
-    /// Most points that are added; none: as many as the tetrahedralizer can number.
+    /// Maximum number of added points; `None`: as many as 32-bit indices allow.
     pub max_points: Option<usize>,
 }
 
 impl Refinement {
-    /// With these bounds on shape and volume.
+    /// Sets the bounds on shape and volume.
     #[must_use]
     pub fn bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
         self
     }
 
-    /// With a bound on the circumradius over the shortest edge; 2 and above is sure to end, 1.2 to 2 mostly does.
+    /// Sets the maximum ratio of circumradius to shortest edge. Refinement always ends for 2 and above, and usually for 1.2
+    /// to 2.
     #[must_use]
     pub fn max_radius_edge(mut self, bound: f64) -> Self {
         self.bounds.max_radius_edge = Some(bound);
         self
     }
 
-    /// With a bound on the smallest dihedral angle, in degrees.
+    /// Sets the minimum dihedral angle, in degrees.
     #[must_use]
     pub fn min_dihedral(mut self, degrees: f64) -> Self {
         self.bounds.min_dihedral = Some(degrees);
         self
     }
 
-    /// With a bound on the volume.
+    /// Sets the maximum volume.
     #[must_use]
     pub fn max_volume(mut self, bound: f64) -> Self {
         self.bounds.max_volume = Some(bound);
         self
     }
 
-    /// With a bound on the number of points that are added.
+    /// Sets the maximum number of added points.
     #[must_use]
     pub fn max_points(mut self, bound: usize) -> Self {
         self.max_points = Some(bound);
@@ -127,10 +128,10 @@ impl Refinement {
 /// Treatment of the input triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// Nothing: each is a face of the mesh.
+    /// Each triangle is a face of the mesh.
     #[default]
     Keep,
-    /// They may be split: each is a union of faces of the mesh.
+    /// Triangles may be split: each is a union of faces of the mesh.
     Split,
 }
 

@@ -28,7 +28,7 @@ pub struct Plc {
     pub markers: Vec<i32>,
     /// Segments to keep besides the edges of the triangles, for instance dangling ones.
     pub segments: Vec<[u32; 2]>,
-    /// A point in each part of space that stays empty. Used for [`InputKind::Plc`] only.
+    /// Seeds of holes: one point in each. Used for [`InputKind::Plc`] only.
     pub holes: Vec<Point3>,
     /// Regions with an id of their own.
     pub regions: Vec<Region>,
@@ -88,7 +88,7 @@ pub struct Region {
     pub seed: Point3,
     /// Id that its tetrahedra get.
     pub id: i32,
-    /// Bound on the volume of its tetrahedra, looked at when the mesh is refined.
+    /// Maximum volume of its tetrahedra, if the mesh is refined.
     pub max_volume: Option<f64>,
 }
 
@@ -118,17 +118,17 @@ impl From<TriMesh> for Plc {
 /// Kind of a complex, which determines the part of space that is filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InputKind {
-    /// Surfaces that bound a volume: each edge has two triangles, which run through it in opposite directions. Space is
-    /// filled where a way from infinity crosses the surface an odd number of times: shells may be nested, whatever way
-    /// they are turned. Segments may dangle inside.
+    /// Closed surfaces: each edge has two triangles, which have it in opposite directions. Space is filled where a path from
+    /// infinity crosses the surface an odd number of times. So shells may be nested, in any orientation. Segments may
+    /// dangle inside.
     #[default]
     Closed,
-    /// Any facets: they may lie inside, dangle, and meet in edges by threes and more, turned one way or the other. All
-    /// that cannot be reached from infinity or from a hole without crossing a facet is filled.
+    /// Any facets, in any orientation. They may lie inside or dangle, and three or more may share an edge. Space is filled
+    /// if every path from infinity or a hole crosses a facet.
     Plc,
 }
 
-/// Triangles and segments of an input that the mesh does not have, because both of their sides lie outside or in a hole.
+/// Triangles and segments that were left out of the mesh, because all their sides lie outside or in a hole.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LeftOut {
@@ -139,7 +139,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// True if the mesh has all of the input.
+    /// True if the mesh contains the whole input.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.segments.is_empty()
     }
@@ -152,6 +152,16 @@ pub enum InputPart {
     Triangles,
     /// Segments.
     Segments,
+}
+
+impl InputPart {
+    /// Noun for one part, in the singular.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangle",
+            Self::Segments => "segment",
+        }
+    }
 }
 
 impl std::fmt::Display for InputPart {

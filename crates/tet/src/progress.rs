@@ -14,7 +14,7 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// A watch that reports to nobody and never stops a run.
+    /// Watch without a receiver; it never stops a run.
     pub const NOBODY: Watch<'static> = Watch { who: None, is_told: false, budget: None };
 
     /// Reports everything to `who`, and asks for cancellation.

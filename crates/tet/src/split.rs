@@ -197,7 +197,7 @@ impl Tetrahedralizer {
     }
 
     fn run_pieces(&self, plc: PlcRef) -> Result<Tetrahedralization, TetError> {
-        let (refinement, sizing) = self.wishes();
+        let (refinement, sizing) = self.refinement_and_sizing();
         let volume = refinement.and_then(|r| r.bounds.max_volume);
         let size = Arc::new(sized::size_function(plc.surface, sizing, volume));
         let mut pieces = Pieces::new(plc.to_owned());

@@ -7,9 +7,9 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Random number generator.
-struct Coin(u64);
+struct Rng(u64);
 
-impl Coin {
+impl Rng {
     fn next(&mut self) -> u64 {
         self.0 = hash(self.0.wrapping_add(0x9e37_79b9_7f4a_7c15));
         self.0
@@ -30,8 +30,8 @@ impl Coin {
     }
 }
 
-fn turned(mut s: TriMesh, coin: &mut Coin) -> TriMesh {
-    let rotation = coin.rotation();
+fn turned(mut s: TriMesh, rng: &mut Rng) -> TriMesh {
+    let rotation = rng.rotation();
     for p in &mut s.points {
         *p = rotation * *p;
     }
@@ -39,20 +39,20 @@ fn turned(mut s: TriMesh, coin: &mut Coin) -> TriMesh {
 }
 
 /// Random triangulation of a convex polygon.
-fn triangulated(corners: &[u32], coin: &mut Coin, out: &mut Vec<[u32; 3]>) {
+fn triangulated(corners: &[u32], rng: &mut Rng, out: &mut Vec<[u32; 3]>) {
     let n = corners.len();
     if n >= 3 {
-        let k = 1 + coin.below(n - 2);
+        let k = 1 + rng.below(n - 2);
         out.push([corners[0], corners[k], corners[n - 1]]);
-        triangulated(&corners[..=k], coin, out);
-        triangulated(&corners[k..], coin, out);
+        triangulated(&corners[..=k], rng, out);
+        triangulated(&corners[k..], rng, out);
     }
 }
 
 /// A plate over a convex polygon, with independent random triangulations at top and bottom.
-fn plate(n: u32, height: f64, coin: &mut Coin) -> TriMesh {
+fn plate(n: u32, height: f64, rng: &mut Rng) -> TriMesh {
     let mut s = TriMesh::default();
-    let mut angles: Vec<f64> = (0..n).map(|i| f64::from(i) + 0.9 * coin.share()).collect();
+    let mut angles: Vec<f64> = (0..n).map(|i| f64::from(i) + 0.9 * rng.share()).collect();
     for a in &mut angles {
         *a *= std::f64::consts::TAU / f64::from(n);
     }
@@ -60,8 +60,8 @@ fn plate(n: u32, height: f64, coin: &mut Coin) -> TriMesh {
         s.points.extend(angles.iter().map(|a| Point3::new(a.cos(), a.sin(), z)));
     }
     let rim: Vec<u32> = (0..n).collect();
-    triangulated(&rim.iter().rev().copied().collect::<Vec<_>>(), coin, &mut s.triangles);
-    triangulated(&rim.iter().map(|v| v + n).collect::<Vec<_>>(), coin, &mut s.triangles);
+    triangulated(&rim.iter().rev().copied().collect::<Vec<_>>(), rng, &mut s.triangles);
+    triangulated(&rim.iter().map(|v| v + n).collect::<Vec<_>>(), rng, &mut s.triangles);
     for i in 0..n {
         let j = (i + 1) % n;
         s.triangles.extend([[i, j, n + i], [j, n + j, n + i]]);
@@ -128,10 +128,10 @@ fn turned_plates_are_filled() {
     let mut filled = 0;
     for seed in 0..cases() {
         for height in [1.0, 1e-2] {
-            let mut coin = Coin(seed);
-            let n = 4 + coin.below(40) as u32;
-            let plate = plate(n, height, &mut coin);
-            filled += u64::from(fills(&turned(plate, &mut coin), &format!("plate {seed} {n} {height}")));
+            let mut rng = Rng(seed);
+            let n = 4 + rng.below(40) as u32;
+            let plate = plate(n, height, &mut rng);
+            filled += u64::from(fills(&turned(plate, &mut rng), &format!("plate {seed} {n} {height}")));
         }
     }
     assert!(filled > 3 * cases() / 2, "{filled}");
@@ -140,58 +140,58 @@ fn turned_plates_are_filled() {
 #[test]
 fn turned_plates_of_needles_are_filled() {
     for seed in 0..cases() / 10 {
-        let mut coin = Coin(seed);
-        let n = 300 + coin.below(300) as u32;
-        let plate = plate(n, 0.2, &mut coin);
-        assert!(fills(&turned(plate, &mut coin), &format!("needles {seed} {n}")));
+        let mut rng = Rng(seed);
+        let n = 300 + rng.below(300) as u32;
+        let plate = plate(n, 0.2, &mut rng);
+        assert!(fills(&turned(plate, &mut rng), &format!("needles {seed} {n}")));
     }
 }
 
 #[test]
 fn turned_rows_of_points_are_filled() {
     for seed in 0..cases() / 4 {
-        let mut coin = Coin(seed);
-        let sides = [0; 3].map(|_| 0.1 + coin.share());
-        let rows = rows(sides, 1 + coin.below(3) as u32);
-        assert!(fills(&turned(rows, &mut coin), &format!("rows {seed}")));
+        let mut rng = Rng(seed);
+        let sides = [0; 3].map(|_| 0.1 + rng.share());
+        let rows = rows(sides, 1 + rng.below(3) as u32);
+        assert!(fills(&turned(rows, &mut rng), &format!("rows {seed}")));
     }
 }
 
 #[test]
 fn turned_boxes_within_boxes_are_filled() {
     for seed in 0..cases() {
-        let mut coin = Coin(seed);
-        let mut all = rows([1.0, 1.2, 1.4], coin.below(3) as u32);
-        let mut inner = rows([0.3, 0.4, 0.5], coin.below(2) as u32);
+        let mut rng = Rng(seed);
+        let mut all = rows([1.0, 1.2, 1.4], rng.below(3) as u32);
+        let mut inner = rows([0.3, 0.4, 0.5], rng.below(2) as u32);
         let n = all.points.len() as u32;
-        let aside = Vec3::new(coin.share(), coin.share(), coin.share()) * 0.6 + Vec3::repeat(0.05);
+        let aside = Vec3::new(rng.share(), rng.share(), rng.share()) * 0.6 + Vec3::repeat(0.05);
         for p in &mut inner.points {
             *p += aside;
         }
         all.points.append(&mut inner.points);
         all.triangles.extend(inner.triangles.iter().map(|&[a, b, c]| [n + a, n + c, n + b]));
-        assert!(fills(&turned(all, &mut coin), &format!("boxes {seed}")));
+        assert!(fills(&turned(all, &mut rng), &format!("boxes {seed}")));
     }
 }
 
 #[test]
 fn turned_plates_as_thin_as_can_be_are_filled() {
     for seed in 0..cases() {
-        let mut coin = Coin(seed);
+        let mut rng = Rng(seed);
         // From thick ones to one unit in the last place.
-        let height = 10.0_f64.powf(-16.0 * coin.share()).max(f64::EPSILON);
-        let n = 4 + coin.below(20) as u32;
-        let plate = plate(n, height, &mut coin);
-        fills(&turned(plate, &mut coin), &format!("thin {seed} {n} {height}"));
+        let height = 10.0_f64.powf(-16.0 * rng.share()).max(f64::EPSILON);
+        let n = 4 + rng.below(20) as u32;
+        let plate = plate(n, height, &mut rng);
+        fills(&turned(plate, &mut rng), &format!("thin {seed} {n} {height}"));
     }
 }
 
 #[test]
 fn turned_plates_of_needles_in_single_precision_are_filled() {
     for seed in 0..cases() / 10 {
-        let mut coin = Coin(seed);
-        let n = 100 + coin.below(400) as u32;
-        let mut plate = turned(plate(n, 0.2, &mut coin), &mut coin);
+        let mut rng = Rng(seed);
+        let n = 100 + rng.below(400) as u32;
+        let mut plate = turned(plate(n, 0.2, &mut rng), &mut rng);
         for x in plate.points.iter_mut().flat_map(|p| p.iter_mut()) {
             *x = f64::from(*x as f32);
         }
@@ -202,11 +202,11 @@ fn turned_plates_of_needles_in_single_precision_are_filled() {
 #[test]
 fn plates_of_needles_with_points_amid_their_edges_are_filled() {
     for seed in 0..cases() / 10 {
-        let mut coin = Coin(seed);
-        let n = 100 + coin.below(200) as u32;
-        let plate = split(&plate(n, 0.2, &mut coin));
+        let mut rng = Rng(seed);
+        let n = 100 + rng.below(200) as u32;
+        let plate = split(&plate(n, 0.2, &mut rng));
         fills(&plate, &format!("split {seed} {n}"));
-        fills(&turned(plate, &mut coin), &format!("split, turned {seed} {n}"));
+        fills(&turned(plate, &mut rng), &format!("split, turned {seed} {n}"));
     }
 }
 
@@ -214,13 +214,13 @@ fn plates_of_needles_with_points_amid_their_edges_are_filled() {
 #[test]
 fn nearly_flat_discs_are_filled() {
     for seed in 0..cases() {
-        let mut coin = Coin(seed);
-        let n = 5 + coin.below(60) as u32;
-        let noise = 10.0_f64.powf(-16.0 + 8.0 * coin.share());
-        let mut plate = split(&plate(n, 0.3, &mut coin));
+        let mut rng = Rng(seed);
+        let n = 5 + rng.below(60) as u32;
+        let noise = 10.0_f64.powf(-16.0 + 8.0 * rng.share());
+        let mut plate = split(&plate(n, 0.3, &mut rng));
         for p in &mut plate.points {
-            p.z += noise * (coin.share() - 0.5);
+            p.z += noise * (rng.share() - 0.5);
         }
-        fills(&turned(plate, &mut coin), &format!("noise {seed} {n} {noise}"));
+        fills(&turned(plate, &mut rng), &format!("noise {seed} {n} {noise}"));
     }
 }

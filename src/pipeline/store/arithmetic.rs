@@ -1,5 +1,7 @@
-//! Fingerprint of a machine's arithmetic. The functions of the C library differ in the last bit between versions, and between processors
-//! with and without fused multiplication; blocks that two such machines make have other discs where they meet.
+//! Fingerprint of a machine's arithmetic.
+//!
+//! Functions of the C library differ in the last bit between versions, and between processors with and without fused
+//! multiplication. Blocks of two such machines would have different discs at their common joint.
 
 use super::key::{Key, KeyMaker};
 

@@ -1,6 +1,6 @@
 //! Positions of records in the files of a work directory, for readers without the keys.
 //!
-//! Records are never moved nor changed: as long as the files are there the places hold, whoever adds to them.
+//! Records are never moved nor changed. Positions stay valid while the files exist, even if other runs append records.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use super::shelf::Shelf;
 use super::{Backend, RecordId, Store, once};
 use crate::pipeline::effort::Ledger;
 
-/// Files, and the place of each record: its file, where it begins and where it ends.
+/// Files, and the position of each record: its file, start and end.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Extents {
     /// Their names, as bytes.
@@ -29,12 +29,12 @@ impl Extents {
         self.places.len()
     }
 
-    /// The record of a number.
+    /// Returns the record with a number.
     pub(crate) fn record(number: usize) -> RecordId {
         RecordId(number as u32)
     }
 
-    /// Files in a folder, and records in them; none where a name leads out of it.
+    /// Files in a folder, and records in them. `None` if a name leads out of the folder.
     fn shelf(&self, folder: &Path) -> Option<Shelf> {
         let path = |name: &Vec<u8>| {
             let name = Path::new(std::str::from_utf8(name).ok()?);
@@ -72,15 +72,15 @@ impl Store {
         Some(out)
     }
 
-    /// Records in the files of a folder, to be read only; none where there can be no such files.
+    /// Opens the records in the files of a folder, read-only. `None` if such files cannot exist.
     pub(crate) fn of_extents(folder: &Path, extents: &Extents) -> Option<Self> {
         Some(Self { place: Backend::Shelf(extents.shelf(folder)?), known: Mutex::default(), ledger: Ledger::default() })
     }
 
-    /// Leaves something in a work directory, in the place of what was left there before.
+    /// Writes the positions to a work directory, replacing earlier ones.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// The file cannot be written.
     pub(crate) fn leave<T: Serialize>(&self, what: &str, value: &T) -> Result<(), StoreError> {
         let Backend::Folder(folder, ..) = &self.place else { return Ok(()) };
         let path = folder.join(format!("anastomesh.{what}"));

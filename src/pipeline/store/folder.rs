@@ -1,7 +1,7 @@
-//! Work directories: who may be in one, and what it is begun with.
+//! Work directories: locks, and the check of the manifest.
 //!
-//! Every run holds the directory's lock, alone or, a shard, together with others. What is written for all of them (the
-//! manifest, the number of shards) is written under a lock that is held for as long as that takes.
+//! Every run holds the directory's lock: shards share it, other runs hold it alone. A second lock protects the files that
+//! all runs use (the manifest, the number of shards). It is held only while one of them is written.
 
 use std::fs::{self, File};
 use std::io;
@@ -21,18 +21,18 @@ const LOCK: &str = "anastomesh.lock";
 const BEGIN: &str = "anastomesh.begin.lock";
 const BLOCKS: &str = "anastomesh.blocks";
 
-/// As what a run comes to a work directory.
+/// Role of a run in a work directory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Role {
-    /// Alone, with the blocks that it or shards have made before.
+    /// One run alone, with the blocks of earlier runs and shards.
     Alone {
-        /// Throw away what is of another network, other options or another version instead of refusing it.
+        /// Delete blocks of another network, other options or another version instead of refusing them.
         restart: bool,
-        /// Make what shards have left undone instead of refusing it.
+        /// Make the blocks that shards have not finished, instead of failing.
         make_missing: bool,
     },
-    /// As one of several that make a share of the blocks each.
+    /// One of several runs that each make a share of the blocks.
     Shard(Shard),
 }
 
@@ -42,11 +42,11 @@ pub(super) struct Opened {
     pub own: LogFile,
     /// Records of other runs.
     pub others: Shelf,
-    /// Keys of what others have written, then of what is in the own file.
+    /// Keys of the records of other runs, then of those in the own file.
     pub keys: Vec<Key>,
 }
 
-/// Takes hold of a work directory.
+/// Locks and opens a work directory.
 pub(super) fn open(folder: &Path, manifest: &Manifest, role: Role) -> Result<Opened, StoreError> {
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     fs::create_dir_all(folder).map_err(failed)?;
@@ -81,7 +81,7 @@ fn alone(folder: &Path, lock: File, make_missing: bool) -> Result<Opened, StoreE
     Ok(Opened { own, others, keys })
 }
 
-/// A shard finds what a run that was alone has made before.
+/// A shard finds the blocks of an earlier run that was alone.
 fn shard_of(folder: &Path, lock: File, shard: Shard) -> Result<Opened, StoreError> {
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     let busy = || StoreError::ShardLocked { path: folder.to_path_buf(), shard };
@@ -96,7 +96,7 @@ fn shard_of(folder: &Path, lock: File, shard: Shard) -> Result<Opened, StoreErro
     Ok(Opened { own, others, keys })
 }
 
-/// Empties the directory of all that is ours, then says what the next blocks belong to.
+/// Deletes all files of this program from the directory, then writes the manifest of the next blocks.
 fn begin(folder: &Path, manifest: &Manifest) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

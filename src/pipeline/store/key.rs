@@ -1,16 +1,15 @@
-//! Keys: a fingerprint of all that a block depends on.
+//! Keys: hashes of all inputs of a block.
 
 use xxhash_rust::xxh3::Xxh3;
 
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 
-/// 128 bits made of everything that a record depends on. Two of 2^40 different inputs have the same key with a
-/// probability of less than 2^-48.
+/// Hash of all inputs of a record, 128 bits. Two of 2^40 different inputs have equal keys with a probability below 2^-48.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u128);
 
-/// Lookup key of records, of which there are millions: as much of the key as leaves a chance of less than 2^-48 that
-/// two of 2^24 have the same.
+/// Lookup key of records: 96 bits of the key, because there are millions of records. The probability that two of 2^24
+/// records have equal lookup keys is below 2^-48.
 pub(super) type ShortKey = [u32; 3];
 
 impl Key {

@@ -1,4 +1,4 @@
-//! Locks of a work directory: held by an open file, so that they go when the program does, however it ends.
+//! Locks of a work directory. An open file holds a lock, so the system releases it when the program ends or is killed.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -14,16 +14,16 @@ const AGAIN: Duration = Duration::from_millis(20);
 /// Mode of a lock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LockMode {
-    /// By one run alone.
+    /// Exclusive: one run holds the lock.
     Alone,
-    /// By any number of runs, none of which holds it alone.
+    /// Shared: any number of runs hold the lock, while none holds it exclusively.
     Shared,
 }
 
-/// Takes a lock; none when others have it.
+/// Takes a lock. `None` if another run holds it.
 ///
 /// # Errors
-/// When the folder cannot be used, or its file system has no locks.
+/// The folder cannot be used, or its file system has no locks.
 pub(super) fn try_lock(folder: &Path, name: &str, hold: LockMode) -> Result<Option<File>, StoreError> {
     let path = folder.join(name);
     let open = || File::options().write(true).create(true).truncate(false).open(&path);
@@ -36,7 +36,7 @@ pub(super) fn try_lock(folder: &Path, name: &str, hold: LockMode) -> Result<Opti
     if !is_taken(folder, taken)? {
         return Ok(None);
     }
-    // Some file systems grant every lock. A lock that does not keep this second file out keeps nobody out.
+    // Some file systems grant every lock. If a second file gets the lock too, it protects nothing.
     let second = open().map_err(unusable)?;
     if is_taken(folder, second.try_lock())? {
         return Err(StoreError::NoLocks { path: folder.to_path_buf(), why: "it grants one lock twice".into() });
@@ -44,10 +44,10 @@ pub(super) fn try_lock(folder: &Path, name: &str, hold: LockMode) -> Result<Opti
     Ok(Some(file))
 }
 
-/// Takes a lock alone, as soon as nobody else has it.
+/// Waits for an exclusive lock, and takes it.
 ///
 /// # Errors
-/// As [`try_lock`]; and when the run is told to stop.
+/// Those of [`try_lock`], or the run was cancelled.
 pub(super) fn wait_for(folder: &Path, name: &str, progress: &dyn Progress) -> Result<File, StoreError> {
     loop {
         if let Some(lock) = try_lock(folder, name, LockMode::Alone)? {
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_file_system_without_locks_is_named() {
-        // What NFS without its lock service answers, and file systems that know no locks at all.
+        // Answers of NFS without its lock service, and of file systems without locks.
         for kind in [io::ErrorKind::Unsupported, io::ErrorKind::Other] {
             let error = is_taken("there".as_ref(), Err(TryLockError::Error(kind.into()))).expect_err("no locks");
             assert!(matches!(error, StoreError::NoLocks { .. }));

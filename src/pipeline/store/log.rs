@@ -1,5 +1,7 @@
-//! Records in a file, one behind the other. A record that was not written to its end is found by its checksum and cut
-//! off when the file is opened again, so the program may be killed at any moment.
+//! Records in a file, one behind the other.
+//!
+//! A checksum detects a record that was not written completely. Such a record is cut off when the file is opened again, so
+//! the program may be killed at any moment.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -11,11 +13,11 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 use super::key::Key;
 
-/// Before every record: a mark, the length of what follows, its key, its checksum.
+/// Head of a record: a mark, the length of the data, its key, its checksum.
 const HEAD: usize = 4 + 8 + 16 + 8;
 const MARK: [u8; 4] = *b"blk1";
 
-/// A file of records.
+/// File of records.
 #[derive(Debug)]
 pub(super) struct LogFile {
     name: String,
@@ -34,13 +36,13 @@ struct Writer {
 }
 
 impl LogFile {
-    /// A file without a name.
+    /// Creates an unnamed file.
     pub(super) fn in_passing(folder: &Path) -> io::Result<Self> {
         let file = tempfile::tempfile_in(folder)?;
         Self::new(format!("{} (a file without a name)", folder.display()), file, 0, Vec::new(), Vec::new())
     }
 
-    /// Opens a file with what it holds; the keys of the records, in their order. `locks` are held for as long.
+    /// Opens a file, and returns it with the keys of its records in order. `locks` are held until it is closed.
     pub(super) fn open(path: &Path, locks: Vec<File>) -> io::Result<(Self, Vec<Key>)> {
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
         let length = file.metadata()?.len();
@@ -74,7 +76,7 @@ impl LogFile {
         self.extent(record).map(|extent| extent.end - extent.start)
     }
 
-    /// Bytes of it that are in use.
+    /// Size of its valid part, in bytes.
     pub(super) fn length(&self) -> u64 {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
     }
@@ -84,12 +86,12 @@ impl LogFile {
         self.ends.read().unwrap_or_else(PoisonError::into_inner).len()
     }
 
-    /// Waits until the disk has all of it.
+    /// Flushes the file to disk.
     pub(super) fn sync(&self) -> io::Result<()> {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).file.sync_data()
     }
 
-    /// Appends a record; its number. When that fails, the file is as it was.
+    /// Appends a record, and returns its number. After an error, the file is unchanged.
     pub(super) fn append(&self, key: Key, bytes: &[u8]) -> io::Result<usize> {
         let head = head_of(key, bytes);
         let mut writer = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
@@ -100,7 +102,7 @@ impl LogFile {
         }
         let written = write_at(&mut writer.file, start, &[&head, bytes]);
         if let Err(error) = written {
-            // What is left of the record would be cut off by the next run as well.
+            // The next run would cut off the incomplete record as well.
             let _ = writer.file.set_len(start);
             return Err(error);
         }
@@ -111,7 +113,7 @@ impl LogFile {
         Ok(ends.len() - 1)
     }
 
-    /// Some bytes of a record.
+    /// Reads some bytes of a record.
     pub(super) fn read(&self, record: usize, range: Range<u64>) -> io::Result<Vec<u8>> {
         let extent = self.extent(record).filter(|e| range.start <= range.end && range.end <= e.end - e.start);
         let extent = extent.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof))?;
@@ -125,7 +127,7 @@ impl LogFile {
         read_exact_at(&self.reader, bytes, offset)
     }
 
-    /// Without reads at a place, readers take turns with the writer, whose position they share.
+    /// Without positioned reads, readers and the writer share one position and take turns.
     #[cfg(not(unix))]
     fn read_at(&self, bytes: &mut [u8], offset: u64) -> io::Result<()> {
         let _turn = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
@@ -133,13 +135,13 @@ impl LogFile {
     }
 }
 
-/// Reads at a place.
+/// Reads at a position.
 #[cfg(unix)]
 pub(super) fn read_exact_at(file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
     std::os::unix::fs::FileExt::read_exact_at(file, bytes, offset)
 }
 
-/// Reads at a place, which moves the file's position: callers take turns.
+/// Reads at a position, and moves the position of the file. Callers must take turns.
 #[cfg(not(unix))]
 pub(super) fn read_exact_at(mut file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
     file.seek(SeekFrom::Start(offset))?;
@@ -166,7 +168,7 @@ fn head_of(key: Key, bytes: &[u8]) -> [u8; HEAD] {
     head
 }
 
-/// The sound records at the beginning of a file.
+/// Valid records at the beginning of a file.
 pub(super) struct Scanned {
     pub records: Vec<(Key, Range<u64>)>,
     /// End of the records.
@@ -175,7 +177,7 @@ pub(super) struct Scanned {
     pub length: u64,
 }
 
-/// The records of a file; none where there is no file.
+/// Reads the records of a file; empty if the file does not exist.
 pub(super) fn scan_path(path: &Path) -> io::Result<Scanned> {
     match File::open(path) {
         Ok(file) => scan(&file, file.metadata()?.len()),

@@ -11,7 +11,7 @@ use super::error::Difference;
 use super::key::{Key, KeyMaker};
 use anastomesh_skeleton::Skeleton;
 
-/// Version of what is in a work directory.
+/// Version of the format of work directories.
 const FORMAT: u32 = 4;
 
 pub(crate) const MANIFEST: &str = "anastomesh.json";
@@ -39,14 +39,14 @@ pub(crate) const MANIFEST: &str = "anastomesh.json";
 pub struct Manifest {
     format: u32,
     program: String,
-    /// Fingerprint of the arithmetic: results that differ in the last bits give other discs at joints.
+    /// Fingerprint of the arithmetic. Results that differ in the last bits would give different discs at joints.
     arithmetic: String,
     network: String,
     options: serde_json::Value,
 }
 
 impl Manifest {
-    /// Of a network as it was read; `options` is an object with everything else that the mesh depends on.
+    /// Creates the manifest of a network as read. `options` is an object with all other inputs of the mesh.
     pub fn new(network: &Skeleton, options: serde_json::Value) -> Self {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
         let arithmetic = format!("{:032x}", arithmetic::fingerprint().0);
@@ -57,7 +57,7 @@ impl Manifest {
     pub(super) fn begun(&self, folder: &Path) -> io::Result<Begun> {
         let text = match fs::read(folder.join(MANIFEST)) {
             Ok(text) => text,
-            // Blocks without a manifest: killed between the two, or not ours; nothing says what they belong to.
+            // Blocks without a manifest: the run was killed before it was written, or another program wrote them.
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Begun::Nothing),
             Err(error) => return Err(error),
         };
@@ -81,7 +81,7 @@ impl Manifest {
     }
 }
 
-/// A key of all that a network holds.
+/// Hash of all data of a network.
 pub fn fingerprint(network: &Skeleton) -> Key {
     let mut key = KeyMaker::new("network");
     key.count(network.nodes.len());
@@ -98,7 +98,7 @@ pub fn fingerprint(network: &Skeleton) -> Key {
     key.finish()
 }
 
-/// The first place in which two values differ.
+/// First position at which two values differ.
 fn first_difference(name: &str, was: &serde_json::Value, is: &serde_json::Value) -> Option<Difference> {
     if was == is {
         return None;

@@ -1,7 +1,7 @@
-//! Finished blocks, out of memory: kept under a key that is made of all that they depend on.
+//! Store of finished blocks outside main memory. The key of a block is a hash of all its inputs.
 //!
-//! Whoever asks for a block looks for its key first. So a block that does not change when others are cut anew is not
-//! meshed again, and a run that was killed goes on where it was: it does everything again and finds nearly all of it done.
+//! A block is looked up by its key before it is meshed. So a block that does not change when others are cut again is not
+//! meshed again. A run that was killed is repeated from the start, and finds nearly all blocks in the store.
 
 mod arithmetic;
 mod error;
@@ -44,12 +44,12 @@ use super::effort::Ledger;
 use crate::block::Bytes;
 use anastomesh_mesh::progress::Progress;
 
-/// A record of the store.
+/// Record of the store.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RecordId(u32);
 
 impl RecordId {
-    /// Its number: records are numbered through.
+    /// Number of the record; numbers are consecutive.
     pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
@@ -68,7 +68,7 @@ pub struct Store {
 enum Backend {
     Memory(RwLock<Vec<Arc<[u8]>>>),
     File(LogFile),
-    /// A work directory: its path, what others have written there, and the file that this run writes to.
+    /// Work directory: its path, the records of other runs, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
     /// Records of other runs, read-only.
     Shelf(Shelf),
@@ -90,29 +90,29 @@ impl Store {
         &self.ledger
     }
 
-    /// In a file of `folder` that has no name and is gone when the store is dropped, however the program ends.
+    /// Opens a store in an unnamed file of `folder`, which disappears when the store is dropped or the program ends.
     ///
     /// # Errors
-    /// When there can be no file.
+    /// The file cannot be created.
     pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
         let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
         let log = LogFile::in_passing(folder).map_err(failed)?;
         Ok(Self { place: Backend::File(log), known: Mutex::default(), ledger: Ledger::default() })
     }
 
-    /// In a work directory, with the blocks that are there. `restart` throws away those of another network, other options
+    /// Opens the store of a work directory, with its blocks. `restart` deletes the blocks of another network, other options
     /// or another version instead of refusing them.
     ///
     /// # Errors
-    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
+    /// The folder cannot be used, is in use, or belongs to another run; or its shards are not finished.
     pub fn in_folder(folder: &Path, manifest: &Manifest, restart: bool) -> Result<Self, StoreError> {
         Self::in_folder_as(Role::Alone { restart, make_missing: false }, folder, manifest)
     }
 
-    /// In a work directory, alone or as a shard among others.
+    /// Opens the store of a work directory, alone or as one of several shards.
     ///
     /// # Errors
-    /// When the folder cannot be used, is in use, belongs to something else, or shards there have not come to their end.
+    /// The folder cannot be used, is in use, or belongs to another run; or its shards are not finished.
     pub(crate) fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
@@ -123,11 +123,11 @@ impl Store {
         })
     }
 
-    /// Something that is the same for all runs in a work directory: what one of them has made, or what `make` gives, which
-    /// is then kept. `of` says what it is called, and all that it depends on. Elsewhere it is made.
+    /// Returns a value that all runs in a work directory share: the stored one, or that of `make`, which is then stored. `of`
+    /// has its name and everything that it depends on. Without a work directory, `make` is called.
     ///
     /// # Errors
-    /// That of `make`, and when the folder cannot be used.
+    /// That of `make`, or the folder cannot be used.
     pub(crate) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
         &self,
         (what, key): (&str, impl FnOnce() -> Key),
@@ -140,10 +140,10 @@ impl Store {
         }
     }
 
-    /// Says that all blocks of a shard are made, as far as they can be.
+    /// Marks a shard as done: all its blocks have been made or have failed.
     ///
     /// # Errors
-    /// When that cannot be written.
+    /// The mark cannot be written.
     pub(crate) fn mark_done(&self, shard: Shard) -> Result<(), StoreError> {
         let Backend::Folder(folder, _, own) = &self.place else { return Ok(()) };
         let write = || {
@@ -153,15 +153,15 @@ impl Store {
         write().map_err(|source| StoreError::Write { place: own.place(), source })
     }
 
-    /// The record under a key.
+    /// Returns the record of a key.
     pub(crate) fn find(&self, key: Key) -> Option<RecordId> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&key.short()).copied()
     }
 
-    /// Keeps a record; one that is there already stays.
+    /// Stores a record, unless one with this key exists.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// The record cannot be written.
     pub(crate) fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let Entry::Vacant(slot) = known.entry(key.short()) else {
@@ -190,7 +190,7 @@ impl Store {
         }
     }
 
-    /// Bytes that the records take on a disk.
+    /// Size of the records on disk, in bytes.
     pub fn bytes_on_disk(&self) -> u64 {
         match &self.place {
             Backend::Memory(_) => 0,

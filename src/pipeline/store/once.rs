@@ -15,11 +15,12 @@ use super::locks::wait_for;
 use super::whole_file::part_of;
 use anastomesh_mesh::progress::Progress;
 
-/// Reads what is kept in `folder` as `what` under a key, or makes and keeps it. While one run makes it others wait; when
-/// that one is killed another takes its place.
+/// Reads the stored value `what` of a key in `folder`, or makes and stores it.
+///
+/// Other runs wait while one run makes it. If that run is killed, another one makes it.
 ///
 /// # Errors
-/// That of `make`, and when the folder cannot be used.
+/// That of `make`, or the folder cannot be used.
 pub(super) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
     folder: &Path,
     (what, key): (&str, Key),
@@ -31,7 +32,7 @@ pub(super) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
         return Ok(kept);
     }
     let _lock = wait_for(folder, &format!("anastomesh.{what}.lock"), progress)?;
-    // Another one may have made it in the meantime.
+    // Another run may have made it in the meantime.
     if let Some(kept) = read(&path) {
         return Ok(kept);
     }
@@ -40,7 +41,7 @@ pub(super) fn once<T: Serialize + DeserializeOwned, E: From<StoreError>>(
     Ok(made)
 }
 
-/// Bytes that pass by are summed up.
+/// Writer that adds all bytes to a checksum.
 struct Summed<S> {
     inner: S,
     sum: Xxh3,
@@ -72,7 +73,7 @@ impl<R: Read> Read for Summed<R> {
     }
 }
 
-/// The value, then the checksum of its bytes. It has its name only when it is whole.
+/// Writes the value, then the checksum of its bytes. The file gets its name when it is complete.
 pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
     let mut out = Summed::new(BufWriter::with_capacity(1 << 18, part_of(path)?));
     postcard::to_io(value, &mut out).map_err(io::Error::other)?;
@@ -83,7 +84,7 @@ pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> io::Result<()> {
     part.persist(path).map(drop).map_err(|e| e.error)
 }
 
-/// Reads the stored data; `None` if missing or damaged, so that they are made again.
+/// Reads the stored value; `None` if it is missing or damaged, and has to be made again.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
     let input = Summed::new(BufReader::with_capacity(1 << 18, File::open(path).ok()?));
     // Numbers are read through this. Texts would need room for their length: nothing that is kept has any.

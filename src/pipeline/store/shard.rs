@@ -1,40 +1,40 @@
-//! The name of a shard: its number, and how many there are.
+//! Name of a shard: its number and the number of shards.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// One of so many shares of the blocks: `3/8` is the third of eight.
+/// One of several shares of the blocks: `3/8` is the third of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
     number: u32,
     of: u32,
 }
 
-/// No shard.
+/// Invalid shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoShard {
-    /// Not two numbers.
+    /// The text is not two numbers.
     #[error("invalid shard '{0}': give number and count, such as 3/8")]
     Text(String),
-    /// A number that is none of these.
+    /// The shard number is 0, or above the number of shards.
     #[error("shard {0}/{1} is out of range: give 1/{1} to {1}/{1}")]
     Range(u32, u32),
-    /// None, or too many.
+    /// The number of shards is 0 or too large.
     #[error("invalid number of shards {0}: give 1 to {MOST}")]
     Count(u32),
 }
 
-/// More shards than a scheduler starts.
+/// Maximum number of shards; more than schedulers start.
 pub(super) const MOST: u32 = 1_000_000;
 
 impl Shard {
-    /// The share of this number, counted from 1.
+    /// Returns the shard with this number, counted from 1.
     ///
     /// # Errors
-    /// When there is no such share.
+    /// The number is out of range.
     pub fn new(number: u32, of: u32) -> Result<Self, NoShard> {
         match () {
             () if !(1..=MOST).contains(&of) => Err(NoShard::Count(of)),

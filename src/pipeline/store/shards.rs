@@ -1,4 +1,4 @@
-//! Shards: a share of the blocks each, with a file of records of its own, and a mark once all of them are there.
+//! Shards. Each has a share of the blocks, its own file of records, and a mark once all its records exist.
 
 use std::fs;
 use std::io;
@@ -13,7 +13,7 @@ use super::shard::{MOST, Shard};
 use super::shelf::Shelf;
 use super::whole_file::write_whole;
 
-/// Says how many shards there are.
+/// Record of the number of shards.
 const SHARDS: &str = "anastomesh.shards";
 
 /// Record of a shard whose blocks have all been made or failed.
@@ -31,10 +31,10 @@ fn read_json<T: for<'a> Deserialize<'a>>(path: &Path) -> io::Result<Option<T>> {
     }
 }
 
-/// Joins the shards of a folder: the first one says how many there are.
+/// Joins the shards of a folder. The first shard writes their number.
 ///
 /// # Errors
-/// When they are of another number, or the folder cannot be used.
+/// The folder has another number of shards, or cannot be used.
 pub(super) fn join(folder: &Path, shard: Shard) -> Result<(), StoreError> {
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     match read_json::<u32>(&folder.join(SHARDS)).map_err(failed)? {
@@ -46,7 +46,7 @@ pub(super) fn join(folder: &Path, shard: Shard) -> Result<(), StoreError> {
     }
 }
 
-/// Takes a shard's mark away, as it is made again.
+/// Removes the mark of a shard, because its blocks are made again.
 pub(super) fn unmark(folder: &Path, shard: Shard) -> io::Result<()> {
     match fs::remove_file(folder.join(shard.mark())) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
@@ -54,16 +54,16 @@ pub(super) fn unmark(folder: &Path, shard: Shard) -> io::Result<()> {
     }
 }
 
-/// Marks a shard as done, with so many bytes of records.
+/// Marks a shard as done, with the size of its records in bytes.
 pub(super) fn mark(folder: &Path, shard: Shard, bytes: u64) -> io::Result<()> {
     write_whole(&folder.join(shard.mark()), &serde_json::to_vec(&ShardRecord { bytes })?)
 }
 
-/// The records of all shards of a folder, none if there were no shards, and their keys. With `make_missing` what is not
-/// there, or damaged, is left to the run that reads them.
+/// Records of all shards of a folder, and their keys; empty without shards. With `make_missing`, missing or damaged records
+/// are left to the run that reads them.
 ///
 /// # Errors
-/// When a shard is missing or damaged, or a file cannot be read.
+/// A shard is missing or damaged, or a file cannot be read.
 pub(super) fn read_all(folder: &Path, make_missing: bool) -> Result<(Shelf, Vec<Key>), StoreError> {
     let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
     let (mut shelf, mut keys, mut missing) = (Shelf::default(), Vec::new(), Vec::new());

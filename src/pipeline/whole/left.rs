@@ -1,5 +1,5 @@
-//! A whole as it is left in its work directory: all that has to be known of it beside its blocks, so that it can be read without
-//! its network.
+//! Whole mesh as stored in its work directory. The record has the data besides the blocks that are needed to read the mesh
+//! without its network.
 
 use std::path::Path;
 
@@ -91,7 +91,7 @@ impl Whole<'_> {
     /// Leaves it in its work directory, if its blocks are in one.
     ///
     /// # Errors
-    /// When that cannot be written.
+    /// The record cannot be written.
     pub fn leave(&self) -> Result<(), StoreError> {
         let Some(extents) = self.store.extents(self.plan.parts.iter().map(|part| part.record)) else { return Ok(()) };
         self.store.leave(NAME, &(extents, &*self.plan))

@@ -51,7 +51,7 @@ impl Numbering {
     /// Numbers all vertices and tetrahedra; faces are not counted. Joints that are open get patches from `patch` on.
     ///
     /// # Errors
-    /// When there are too many vertices.
+    /// There are too many vertices.
     pub fn of(blocks: &Blocks, mut patch: i32) -> io::Result<Self> {
         let mut all = Self {
             parts: Vec::with_capacity(blocks.clusters.len() + blocks.connectors.len()),

@@ -127,7 +127,7 @@ pub fn locked(opened: io::Result<File>) -> Option<File> {
 /// Minimum age of stale files: the run of a younger file may not have locked it yet.
 const SETTLED: Duration = Duration::from_secs(10);
 
-/// Removes stale files of killed runs under hidden names next to `target`, which nobody locks.
+/// Removes stale files of killed runs under hidden names next to `target`, which no process locks.
 pub fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
     let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

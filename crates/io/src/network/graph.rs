@@ -5,6 +5,7 @@ use super::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
 use super::polylines::{Polylines, Radii};
 use super::radii::{Choice, NodeArrayFault, RadiusFault, node_array};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 use rustc_hash::FxHashMap;
 use std::fmt;
 
@@ -40,7 +41,7 @@ pub enum GraphFault {
     #[error("the file has no nodes: is it a graph with positions?")]
     NoNodes,
     /// There are no edges.
-    #[error("the file has no edges ({nodes} nodes): a network needs vessels")]
+    #[error("the file has no edges ({}): a network needs vessels", counted(*nodes, "node"))]
     NoEdges {
         /// Number of nodes.
         nodes: usize,

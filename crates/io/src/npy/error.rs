@@ -1,5 +1,7 @@
 //! Errors of arrays.
 
+use anastomesh_mesh::units::counted;
+
 /// Error of an array folder, with the affected file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {fault}")]
@@ -57,7 +59,7 @@ pub enum NpyFault {
         found: u64,
     },
     /// The number of rows differs from another array.
-    #[error("has {found} rows, and {of} has {wanted}: there has to be one for each")]
+    #[error("has {}, and {of} has {wanted}: give one row for each", counted(*found, "row"))]
     Rows {
         /// Number of rows found.
         found: usize,
@@ -73,7 +75,7 @@ pub enum NpyFault {
         found: usize,
     },
     /// A row refers to a missing element.
-    #[error("row {row} refers to {index}, but {of} has {count} rows, numbered from 0")]
+    #[error("row {row} refers to {index}, but {of} has {}, numbered from 0", counted(*count, "row"))]
     Index {
         /// First such row.
         row: usize,

@@ -33,19 +33,19 @@ impl Header {
 
     fn parse(text: &str) -> Result<Self, &'static str> {
         let mut words = HeaderText(text);
-        words.expect('{', "it is no dictionary")?;
+        words.expect('{', "it is not a dictionary")?;
         let (mut descr, mut fortran, mut shape) = (None, None, None);
         while !words.skip('}') {
-            let key = words.quoted().ok_or("a key is no word in quotes")?;
+            let key = words.quoted().ok_or("a key is not a quoted string")?;
             words.expect(':', "a key has no value")?;
             match key {
-                "descr" => descr = Some(words.quoted().ok_or("the type is that of records, not of numbers")?),
+                "descr" => descr = Some(words.quoted().ok_or("records are not supported, only numbers")?),
                 "fortran_order" => fortran = Some(words.truth().ok_or("the order is neither True nor False")?),
                 "shape" => shape = Some(words.counts()?),
                 _ => return Err("it has an unknown key"),
             }
             if !words.skip(',') {
-                words.expect('}', "it does not end")?;
+                words.expect('}', "the dictionary is not closed")?;
                 break;
             }
         }
@@ -53,7 +53,7 @@ impl Header {
             (Some(descr), Some(fortran), Some(shape)) if words.0.trim().is_empty() => {
                 Ok(Self { descr: descr.to_owned(), fortran, shape })
             }
-            (Some(_), Some(_), Some(_)) => Err("something stands behind the dictionary"),
+            (Some(_), Some(_), Some(_)) => Err("unexpected text after the dictionary"),
             _ => Err("'descr', 'fortran_order' and 'shape' are needed"),
         }
     }
@@ -99,7 +99,7 @@ impl<'a> HeaderText<'a> {
         while !self.skip(')') {
             let text = self.0.trim_start();
             let digits = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
-            counts.push(text[..digits].parse().map_err(|_| "the shape has something else than counts")?);
+            counts.push(text[..digits].parse().map_err(|_| "the shape is not a tuple of counts")?);
             self.0 = &text[digits..];
             if !self.skip(',') {
                 self.expect(')', "the shape does not end")?;

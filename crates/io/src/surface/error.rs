@@ -4,6 +4,7 @@ use crate::file::FileError;
 use crate::npy::NpyError;
 use crate::text::{Place, TextFault, shown};
 use anastomesh_mesh::facets::FacetError;
+use anastomesh_mesh::units::counted;
 
 /// Errors of reading and writing a surface file.
 pub type SurfaceFileError = FileError<SurfaceFault>;
@@ -40,7 +41,7 @@ pub enum SurfaceFault {
         fault: FacetError,
     },
     /// A face refers to a missing point.
-    #[error("{place}: face {face} refers to point {index}, but the file has {points} points, numbered from {first}")]
+    #[error("{place}: face {face} refers to point {index}, but the file has {}, numbered from {first}", counted(*points, "point"))]
     BadIndex {
         /// The first such face.
         face: usize,
@@ -99,7 +100,7 @@ pub enum SurfaceFault {
         found: u64,
     },
     /// The file has no faces.
-    #[error("the file has no faces, only {points} points: give a surface")]
+    #[error("the file has no faces, only {}: give a surface", counted(*points, "point"))]
     NoFaces {
         /// Number of points.
         points: usize,

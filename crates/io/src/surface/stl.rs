@@ -155,7 +155,10 @@ fn write_binary(out: &mut impl Write, mesh: &TriMesh) -> io::Result<()> {
 /// Writes a boundary in binary, with coordinates rounded to 32 bits.
 pub(super) fn write_boundary(out: &mut impl Write, surface: &BoundarySurface) -> io::Result<()> {
     let Ok(count) = u32::try_from(surface.counts().boundary) else {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "STL cannot count so many triangles; write PLY"));
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "the number of triangles exceeds the 32-bit count of STL; write PLY",
+        ));
     };
     out.write_all(&head(count))?;
     surface.each_corners(|triangles| {

@@ -2,6 +2,7 @@
 
 use crate::file::FileError;
 use crate::text::TextFault;
+use anastomesh_mesh::units::counted;
 
 /// Errors of reading and writing `TetGen` files.
 pub type TetgenFileError = FileError<TetgenFault>;
@@ -29,7 +30,7 @@ pub enum TetgenFault {
     },
     /// A polygon refers to a missing point.
     #[error(
-        "line {line}: facet {facet} refers to point {index}, but the file has {points} points, numbered from {first}"
+        "line {line}: facet {facet} refers to point {index}, but the file has {}, numbered from {first}", counted(*points, "point")
     )]
     BadIndex {
         line: usize,
@@ -46,7 +47,7 @@ pub enum TetgenFault {
     EmptyFacet { line: usize, facet: usize },
     /// A tetrahedron or face of a mesh refers to a missing point.
     #[error(
-        "line {line}: {kind} {cell} refers to point {index}, but the file has {points} points, numbered from {first}"
+        "line {line}: {kind} {cell} refers to point {index}, but the file has {}, numbered from {first}", counted(*points, "point")
     )]
     BadCell {
         line: usize,

@@ -1,5 +1,8 @@
-//! `TetGen` text formats (manual of version 1.5, section 5): points (`.node`), piecewise linear complexes (`.poly`,
-//! `.smesh`), and file families of tetrahedral meshes (`.node`, `.ele`, `.face`, `.edge`, `.neigh`).
+//! Text formats of `TetGen` (manual of version 1.5, section 5).
+//!
+//! - points: `.node`
+//! - piecewise linear complexes: `.poly`, `.smesh`
+//! - file families of tetrahedral meshes: `.node`, `.ele`, `.face`, `.edge`, `.neigh`
 
 mod error;
 mod family;

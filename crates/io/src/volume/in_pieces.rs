@@ -25,7 +25,7 @@ impl InPieces<'_> {
         ranges
     }
 
-    /// Of so many things those of a part; the last parts may have none.
+    /// Range of the items of a part, of `count` in total. The last parts may be empty.
     fn range(&self, count: usize, part: u32) -> Range<usize> {
         self.ranges(count).get(part as usize).cloned().unwrap_or(count..count)
     }

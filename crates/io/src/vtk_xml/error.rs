@@ -33,7 +33,7 @@ pub enum VtkError {
         wanted: &'static str,
     },
     /// An attribute of `VTKFile` has an unsupported value.
-    #[error("{attribute}=\"{value}\" is not supported; save the file with zlib compression or none")]
+    #[error("{attribute}=\"{value}\" is not supported; save the file with {}", supported(attribute))]
     UnknownLayout {
         /// Attribute.
         attribute: &'static str,
@@ -120,4 +120,13 @@ pub enum VtkError {
         /// Value index, from 0.
         index: usize,
     },
+}
+
+/// Supported values of an attribute of `VTKFile`.
+fn supported(attribute: &str) -> &'static str {
+    match attribute {
+        "byte_order" => "LittleEndian or BigEndian",
+        "header_type" => "UInt32 or UInt64",
+        _ => "zlib compression or none",
+    }
 }

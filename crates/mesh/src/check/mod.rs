@@ -126,7 +126,7 @@ impl Check<'_> {
         CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
     }
 
-    /// Checks the genus of closed manifolds; `open` is the condition by which the boundary is none.
+    /// Checks the genus of closed manifolds; `open` is the condition that makes the boundary no closed manifold.
     fn loops(&self, boundary: &Boundary, open: Option<Line>) -> LineResult {
         match (self.expectation, open) {
             (None, _) => LineResult::skipped(Line::Loops, Skipped::NoExpectation),

@@ -355,9 +355,9 @@ fn of_outlets_that_are_one_patch_the_caps_are_not_known() {
     let (mut volume, mut expectation) = tube();
     group(&mut volume, &mut expectation);
     assert_ne!(check_volume(&volume, Some(&expectation)).verdict, Verdict::Invalid);
-    let both_gone = |v: &mut VolumeMesh, e: &mut Expectation| {
+    let remove_both_caps = |v: &mut VolumeMesh, e: &mut Expectation| {
         group(v, e);
         v.patches[1].cap = None;
     };
-    assert_eq!(planted(both_gone), [Line::CapPerTerminal]);
+    assert_eq!(planted(remove_both_caps), [Line::CapPerTerminal]);
 }

@@ -6,7 +6,7 @@ use crate::units::{counted, digits, grouped, place, tetrahedra};
 use std::fmt::{self, Write as _};
 
 /// Maximum offenders per condition in a summary.
-const SPELT_OUT: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// Text report: one line per condition, the first offenders of failed ones, sizes and shape, and finally the verdict.
 impl fmt::Display for CheckReport {
@@ -60,7 +60,7 @@ pub fn faults(check: &CheckReport, hint: &str) -> String {
     for failed in check.failed() {
         // Writing to a string cannot fail.
         let _ = writeln!(out, "FAIL {}", violation(failed));
-        let shown = failed.offenders.len().min(SPELT_OUT);
+        let shown = failed.offenders.len().min(MAX_NAMED);
         for offender in &failed.offenders[..shown] {
             let _ = writeln!(out, "         {}", describe(offender));
         }
@@ -137,11 +137,11 @@ pub fn violation(result: &LineResult) -> String {
 /// Numbers of a sorted list that are not in another sorted list; equal numbers count one by one.
 fn without(all: &[u32], other: &[u32]) -> Vec<u32> {
     let mut left = other.iter().peekable();
-    let is_only_here = |n: &&u32| {
+    let is_unmatched = |n: &&u32| {
         while left.next_if(|other| other < n).is_some() {}
         left.next_if_eq(n).is_none()
     };
-    all.iter().filter(is_only_here).copied().collect()
+    all.iter().filter(is_unmatched).copied().collect()
 }
 
 /// A list of numbers, shortened if long.

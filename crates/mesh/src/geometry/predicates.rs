@@ -12,8 +12,9 @@ pub const MIN_MAGNITUDE: f64 = 1e-42;
 /// Largest magnitude of a coordinate. Fifth powers of differences do not overflow.
 pub const MAX_MAGNITUDE: f64 = 1e58;
 
-/// Roundoff bound of the `orient3d` determinant, relative to the product of the largest differences: Shewchuk's (7 +
-/// 56ε)ε times the six products of the permanent, rounded up.
+/// Roundoff bound of the `orient3d` determinant, relative to the product of the largest differences.
+///
+/// It is Shewchuk's (7 + 56ε)ε times the six products of the permanent, rounded up.
 pub const ORIENT3D_BOUND: f64 = 5e-15;
 
 /// Roundoff bound of the `insphere` determinant: (16 + 224ε)ε times 24 products times the largest lift, rounded up.

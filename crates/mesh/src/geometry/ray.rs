@@ -3,9 +3,11 @@
 use super::Point3;
 use super::predicates::{orient2d, orient3d};
 
-/// Contribution of a triangle to the winding number of a closed surface around `p`: 1 if the ray from `p` along x
-/// leaves through it (counter-clockwise seen from ahead), −1 if it enters, 0 if it misses. `None` if `p` lies on the
-/// triangle. The sum over a closed surface is its winding number.
+/// Contribution of a triangle to the winding number of a closed surface around `p`.
+///
+/// The ray starts at `p` along x. The contribution is 1 if the ray leaves through the triangle (counter-clockwise seen
+/// from ahead), −1 if it enters, and 0 if it misses. It is `None` if `p` lies on the triangle. The sum over a closed
+/// surface is its winding number.
 ///
 /// Exact for coordinates in the range of the predicates. The ray is perturbed symbolically by (ε, ε²) in y and z, so
 /// that it never meets an edge.

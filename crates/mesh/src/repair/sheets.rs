@@ -25,7 +25,7 @@ pub(super) fn kept(triangles: &[[u32; 3]], sheets: &[u32]) -> Vec<bool> {
     }
     let mut at = Sheets::new(triangles, sheets);
     at.decide_by_edges(sheets, &mut keep);
-    at.decide_the_rest(sheets, &mut keep);
+    at.decide_remaining(sheets, &mut keep);
     if !keep.contains(&true) {
         keep.fill(true);
     }
@@ -97,7 +97,7 @@ impl<'a> Sheets<'a> {
     }
 
     /// Decides the others, connected ones alike.
-    fn decide_the_rest(&mut self, sheets: &[u32], keep: &mut [bool]) {
+    fn decide_remaining(&mut self, sheets: &[u32], keep: &mut [bool]) {
         for &start in sheets {
             if !self.is_open(start) {
                 continue;

@@ -1,4 +1,4 @@
-//! Meshability of a skeleton: the figures of the paper's Fig. 11, and those that decide if it is cut.
+//! Meshability of a skeleton: the figures of the paper's Fig. 11, and the conditions for cuts.
 
 mod barrier;
 

@@ -145,8 +145,8 @@ impl Inserter {
         Ok(())
     }
 
-    /// Finds a tetrahedron in conflict with `p`: one with `p` certainly in its circumsphere, one whose closure contains
-    /// `p`, or a ghost whose face sees it from outside. If `p` is a vertex, returns a tetrahedron with it. Visibility
+    /// Finds a tetrahedron in conflict with `p`. Its circumsphere certainly contains `p`, or its closure contains `p`,
+    /// or it is a ghost whose face sees `p` from outside. If `p` is a vertex, returns a tetrahedron with it. Visibility
     /// walks in regular triangulations have no cycles (Edelsbrunner 1990), so exact tests end.
     #[inline(never)]
     fn locate(&self, p: &Point3) -> u32 {
@@ -258,9 +258,9 @@ impl Inserter {
         self.take_slots();
         let vertices = self.number_vertices();
         if vertices <= TABLE {
-            self.stand_by_table(v);
+            self.fill_cavity_by_table(v);
         } else {
-            self.stand_by_hash(v);
+            self.fill_cavity_by_hash(v);
         }
         self.hint = self.created.last().copied().unwrap_or(self.hint);
     }
@@ -301,7 +301,7 @@ impl Inserter {
 
     /// Builds a tetrahedron on each face and connects them. Each edge of the boundary occurs once in each direction.
     #[inline(never)]
-    fn stand_by_table(&mut self, v: u32) {
+    fn fill_cavity_by_table(&mut self, v: u32) {
         for (w, &t) in self.walls.entries().iter().zip(&self.created) {
             let l = w.face.map(|x| self.sites[x as usize].local as usize);
             let turn = turn_of(&w.face, self.ghost);
@@ -325,9 +325,9 @@ impl Inserter {
         }
     }
 
-    /// As [`Self::stand_by_table`], for any number of vertices.
+    /// As [`Self::fill_cavity_by_table`], for any number of vertices.
     #[cold]
-    fn stand_by_hash(&mut self, v: u32) {
+    fn fill_cavity_by_hash(&mut self, v: u32) {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
         for (w, &t) in self.walls.entries().iter().zip(&self.created) {
@@ -349,7 +349,7 @@ impl Inserter {
     }
 
     /// Clears the free slots, and drops the data needed only for insertion.
-    fn without_past(mut self) -> Self {
+    fn drop_insertion_data(mut self) -> Self {
         self.sites = Vec::new();
         for &t in &self.free {
             self.cells[t as usize].verts = [NONE; 4];
@@ -359,7 +359,7 @@ impl Inserter {
 
     /// Returns the tetrahedra, with vertex `v` renamed to `order[v]`, and the empty slots.
     pub(super) fn into_cells(self, order: &[u32]) -> (Vec<Cell>, Vec<u32>) {
-        let Self { mut cells, free, .. } = self.without_past();
+        let Self { mut cells, free, .. } = self.drop_insertion_data();
         for v in cells.iter_mut().flat_map(|cell| &mut cell.verts) {
             *v = order.get(*v as usize).copied().unwrap_or(GHOST);
         }
@@ -368,7 +368,7 @@ impl Inserter {
 
     /// Returns the tetrahedra with ghosts, the empty slots, and a tetrahedron at each vertex.
     pub(super) fn finish(self) -> (Vec<Cell>, Vec<u32>, Vec<u32>) {
-        let Self { mut cells, free, ghost, .. } = self.without_past();
+        let Self { mut cells, free, ghost, .. } = self.drop_insertion_data();
         let mut vertex_tet = vec![NONE; ghost as usize];
         for (t, cell) in (0..).zip(&mut cells) {
             for v in &mut cell.verts {

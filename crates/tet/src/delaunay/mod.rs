@@ -1,5 +1,7 @@
-//! Delaunay tetrahedralization: incremental insertion along a Hilbert curve in random rounds (Amenta, Choi, Rote,
-//! 'Incremental constructions con BRIO', 2003), location by walking, Bowyer–Watson cavities, exact predicates.
+//! Delaunay tetrahedralization by incremental insertion along a Hilbert curve in random rounds.
+//!
+//! The order is that of Amenta, Choi and Rote ('Incremental constructions con BRIO', 2003). Points are located by a
+//! visibility walk and inserted into Bowyer–Watson cavities. All predicates are exact.
 //!
 //! A symbolic perturbation of the lifts decides cospherical points (Devillers, Teillaud, 'Perturbations and Delaunay
 //! triangulations in 3D', 2003). It depends on coordinates alone, so the result is unique for any order of the points,

@@ -45,7 +45,7 @@ fn rename(cells: &mut [Cell], names: &[u32]) {
 /// As [`in_parts`], for points along the Hilbert curve.
 fn split(points: &[Point3], from: usize, watch: &Watch) -> Option<Vec<Cell>> {
     let cut = middle(points)?;
-    if !worth_while(points, cut, watch) {
+    if !is_worth_splitting(points, cut, watch) {
         return None;
     }
     let sides: [Vec<u32>; 2] = {
@@ -89,7 +89,7 @@ fn middle(points: &[Point3]) -> Option<Cut> {
 }
 
 /// True if most of the tetrahedra of a sample stay on one side of the cut.
-fn worth_while(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
+fn is_worth_splitting(points: &[Point3], cut: Cut, watch: &Watch) -> bool {
     let every = (points.len() / SAMPLE).max(1) as u64;
     let sample: Vec<Point3> =
         (0..).zip(points).filter(|&(i, _)| hash(i).is_multiple_of(every)).map(|(_, &p)| p).collect();

@@ -79,8 +79,8 @@ fn det(p: &Row, q: &Row, r: &Row) -> BigRational {
     &p[0] * minor(1, 2) + &p[1] * minor(2, 0) + &p[2] * minor(0, 1)
 }
 
-/// Asserts that the complex is the Delaunay tetrahedralization of the perturbed points: each tetrahedron positive, the
-/// hull convex, and each face locally Delaunay, which suffices (Delaunay's lemma).
+/// Asserts that the complex is the Delaunay tetrahedralization of the perturbed points. By Delaunay's lemma, three
+/// conditions suffice: each tetrahedron is positive, the hull is convex, and each face is locally Delaunay.
 fn check(points: &[Point3], c: &Complex) {
     c.sanity_check().expect("a sound complex");
     let exact = Exact::new(points);

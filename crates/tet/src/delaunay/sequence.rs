@@ -7,7 +7,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::{collinear, orient3d};
 
 /// Points between two checks for cancellation: some milliseconds.
-const ASKED_EVERY: u32 = 1024;
+const CANCEL_INTERVAL: u32 = 1024;
 
 /// Operations per inserted point, as counted by budgets.
 const OPERATIONS: usize = 20;
@@ -24,8 +24,8 @@ pub(super) fn insert_all(points: &[Point3], order: &[u32], watch: &Watch) -> Res
     inserter.start(seed);
     let mut duplicates: Vec<(u32, u32)> = Vec::new();
     for v in 0..order.len() as u32 {
-        if v.is_multiple_of(ASKED_EVERY) {
-            watch.spend(OPERATIONS * ASKED_EVERY as usize)?;
+        if v.is_multiple_of(CANCEL_INTERVAL) {
+            watch.spend(OPERATIONS * CANCEL_INTERVAL as usize)?;
         }
         if !seed.contains(&v)
             && let Err(twin) = inserter.insert(v)

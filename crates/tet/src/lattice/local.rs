@@ -15,7 +15,7 @@ const BAND: f64 = 1.4;
 /// Minimum distance of points of different lattices, in cubes of the coarser one. Within a lattice it is 0.87.
 const APART: f64 = 0.62;
 
-const MOST_BANDS: usize = 12;
+const MAX_BANDS: usize = 12;
 
 /// Points between two checks for cancellation and the budget.
 const ASKED_EVERY: usize = 4096;
@@ -77,7 +77,7 @@ impl Bands {
         if !spread.is_finite() || spread < BAND * BAND.sqrt() {
             return None;
         }
-        let count = ((spread.ln() / BAND.ln()).ceil() as usize).min(MOST_BANDS);
+        let count = ((spread.ln() / BAND.ln()).ceil() as usize).min(MAX_BANDS);
         Some(Self { low, ratio: spread.powf(1.0 / count as f64), count })
     }
 

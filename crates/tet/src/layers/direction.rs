@@ -20,7 +20,7 @@ pub struct Directions {
 
 impl Directions {
     /// Computes directions from the triangles of a wall, counter-clockwise seen from outside. Each direction sees all
-    /// triangles of its vertex from behind as steeply as possible: it is the reversed centre of the smallest spherical
+    /// triangles of its vertex from behind as steeply as possible. It is the reversed centre of the smallest spherical
     /// cap that contains their normals.
     pub fn new(points: &[Point3], wall: &[[u32; 3]]) -> Self {
         let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
@@ -31,7 +31,7 @@ impl Directions {
                 normals[v as usize].push(normal);
             }
         }
-        let ways = normals.iter().map(|of_vertex| way_in(of_vertex)).collect();
+        let ways = normals.iter().map(|of_vertex| inward_direction(of_vertex)).collect();
         Self { ways, normals }
     }
 
@@ -62,7 +62,7 @@ fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
 
 /// Inward direction at a vertex; zero if there is none. Decreasing steps towards the furthest normal converge to the
 /// centre of the smallest enclosing ball (Bădoiu, Clarkson 2003).
-fn way_in(normals: &[Vec3]) -> Vec3 {
+fn inward_direction(normals: &[Vec3]) -> Vec3 {
     let mut middle: Vec3 = -normals.iter().sum::<Vec3>() / normals.len().max(1) as f64;
     let mut best = (0.0, Vec3::zeros());
     for step in 1..=STEPS {

@@ -7,7 +7,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 
 /// Factor of the offset of an obstructing vertex.
-const DRAWN_BACK: f64 = 0.6;
+const OFFSET_FACTOR: f64 = 0.6;
 /// Fraction of the offset below which a vertex gets no layer.
 const LEAST: f64 = 2e-3;
 /// Maximum difference of neighbouring offsets, relative to their distance, after a reduction.
@@ -63,12 +63,12 @@ pub fn inset(
     let mut failures = STUCK.into_iter();
     loop {
         round += 1;
-        ways.drawn_back = if round < PATIENT { DRAWN_BACK } else { 0.0 };
+        ways.drawn_back = if round < PATIENT { OFFSET_FACTOR } else { 0.0 };
         let inner = ways.inner();
         let stack = Stack::new(outer, places.wall, places.is_rim.clone(), &inner, depths);
         let turned = stack.turned();
         if let Some(&first) = turned.first() {
-            if round > MAX_INSET_PASSES || !ways.draw_back(turned.as_flattened()) {
+            if round > MAX_INSET_PASSES || !ways.reduce_offsets(turned.as_flattened()) {
                 return Err(TetError::Stuck { part: Obstacle::Triangle(first), reason: Stuck::Layer });
             }
             continue;
@@ -76,7 +76,7 @@ pub fn inset(
         let inside = TriMesh { points: inner, triangles: places.surface.triangles.clone() };
         let meeting =
             || -> Vec<u32> { contacts(&inside).iter().flatten().flat_map(|&t| inside.triangles[t as usize]).collect() };
-        if places.is_narrow && ways.draw_back(&meeting()) {
+        if places.is_narrow && ways.reduce_offsets(&meeting()) {
             continue;
         }
         match fill(&inside) {
@@ -88,10 +88,10 @@ pub fn inset(
             Err(error) if error.is_stop() => return Err(error),
             Err(error) => {
                 let meeting = if places.is_narrow { Vec::new() } else { meeting() };
-                ways.drawn_back = if meeting.is_empty() { failures.next().unwrap_or(0.0) } else { DRAWN_BACK };
+                ways.drawn_back = if meeting.is_empty() { failures.next().unwrap_or(0.0) } else { OFFSET_FACTOR };
                 let in_the_way = if meeting.is_empty() { stuck(&error, &inside) } else { meeting };
                 let all = || (0..outer.len() as u32).collect::<Vec<u32>>();
-                if round > MAX_INSET_PASSES || !(ways.draw_back(&in_the_way) || ways.draw_back(&all())) {
+                if round > MAX_INSET_PASSES || !(ways.reduce_offsets(&in_the_way) || ways.reduce_offsets(&all())) {
                     return Err(error);
                 }
             }
@@ -128,7 +128,7 @@ struct Ways<'a> {
 
 impl<'a> Ways<'a> {
     fn new(places: &'a Places<'a>) -> Self {
-        Self { places, shares: vec![1.0; places.wanted.len()], drawn_back: DRAWN_BACK }
+        Self { places, shares: vec![1.0; places.wanted.len()], drawn_back: OFFSET_FACTOR }
     }
 
     fn inner(&self) -> Vec<Point3> {
@@ -138,7 +138,7 @@ impl<'a> Ways<'a> {
     }
 
     /// Reduces the offsets of vertices, and grades those around them. Returns false if none could be reduced.
-    fn draw_back(&mut self, vertices: &[u32]) -> bool {
+    fn reduce_offsets(&mut self, vertices: &[u32]) -> bool {
         let mut vertices = vertices.to_vec();
         vertices.sort_unstable();
         vertices.dedup();

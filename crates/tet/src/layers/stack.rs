@@ -43,7 +43,7 @@ impl Numbers {
         self.slot.len() as u32 + self.copied * self.layers
     }
 
-    /// Returns `true` if there are none.
+    /// Returns `true` if the number of vertices is zero.
     pub fn is_empty(&self) -> bool {
         self.slot.is_empty()
     }
@@ -57,7 +57,7 @@ impl Numbers {
         own.chain(both.flat_map(|(_, (o, i))| depths.iter().map(|&depth| toward(o, i, depth)))).collect()
     }
 
-    /// Order of two vertices that decides the diagonal between their copies: rims come first, so that no tetrahedron
+    /// Sort key of two vertices that decides the diagonal between their copies. Rims come first, so that no tetrahedron
     /// has a face on the wall and one beside it.
     fn rank(&self, v: u32) -> (bool, u32) {
         (!self.is_rim[v as usize], v)

@@ -1,5 +1,6 @@
-//! Repairs of tetrahedra that neither smoothing nor flips improve: a new vertex in a cavity around them, or the
-//! contraction of an edge to remove an inner vertex.
+//! Repairs of tetrahedra that neither smoothing nor flips improve.
+//!
+//! A repair inserts a vertex in a cavity around them, or contracts an edge to remove an inner vertex.
 
 use super::improver::CavityBuffers;
 use super::{Effort, Improver};
@@ -262,13 +263,13 @@ impl Improver<'_> {
         }
         let mut worst = f64::NEG_INFINITY;
         for _ in 0..MAX_CAVITY {
-            (p, worst) = self.best_in_room(p, &k.faces);
+            (p, worst) = self.place_in_cavity(p, &k.faces);
             if !self.grow(k, &p, worst) {
                 break;
             }
         }
         let before = self.worst_of(&k.tets);
-        if worst <= floor || worst <= before * GAIN || !self.sees(&p, &k.faces) || !self.keeps_all(k) {
+        if worst <= floor || worst <= before * GAIN || !self.sees(&p, &k.faces) || !self.may_remove_inner(k) {
             return false;
         }
         let vertex = self.c.add_point(p);
@@ -332,7 +333,7 @@ impl Improver<'_> {
     }
 
     /// True if every vertex inside the cavity may be removed.
-    fn keeps_all(&self, k: &CavityBuffers) -> bool {
+    fn may_remove_inner(&self, k: &CavityBuffers) -> bool {
         let on_outline = |v: u32| k.faces.iter().any(|f| f.contains(&v));
         k.tets
             .iter()

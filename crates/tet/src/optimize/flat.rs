@@ -9,7 +9,7 @@ use super::allowance::Allowance;
 pub(super) const FLAT: f64 = 1e-9;
 /// Radius ratio below which it counts as thin, and its maximum fraction of the attainable ratio.
 const THIN: f64 = 1e-3;
-const TO_BLAME: f64 = 0.1;
+const MAX_THIN_SHARE: f64 = 0.1;
 /// Maximum attempts on thin tetrahedra: one per 50 tetrahedra of the mesh, but at least 50.
 const MOST: (usize, usize) = (50, 50);
 /// Maximum rounds over the remaining ones, since their surroundings may have changed.
@@ -29,14 +29,14 @@ impl Improver<'_> {
             return 0;
         }
         let allowance = Allowance::of(&self.c);
-        let mut purse = (self.c.real_tets().count() / MOST.0).max(MOST.1);
+        let mut budget = (self.c.real_tets().count() / MOST.0).max(MOST.1);
         for _ in 0..MAX_FLAT_PASSES {
             let list = self.worst_first(THIN);
             let mut changes = 0;
             for &(q, t) in &list {
-                let wanted = q < FLAT || (purse > 0 && q < TO_BLAME * allowance.of_tet(&self.c.verts(t)));
+                let wanted = q < FLAT || (budget > 0 && q < MAX_THIN_SHARE * allowance.of_tet(&self.c.verts(t)));
                 if wanted && self.is_loose((q, t)) {
-                    purse = purse.saturating_sub(usize::from(q >= FLAT));
+                    budget = budget.saturating_sub(usize::from(q >= FLAT));
                     changes += usize::from(self.dissolve(t));
                 }
             }

@@ -59,7 +59,7 @@ impl Improver<'_> {
         let Some(candidate) = best.1 else { return false };
         // The last plan may belong to another candidate, so plan again.
         self.plan(t, candidate, floor).is_some()
-            && self.eases(self.flipper.doomed(), self.flipper.planned())
+            && self.eases(self.flipper.removed_tets(), self.flipper.planned())
             && self.commit_flip()
     }
 

@@ -12,7 +12,7 @@ use crate::star::{EdgeRing, Star};
 use anastomesh_mesh::quality::radius_ratio;
 
 /// Attempts between two checks for cancellation: some milliseconds.
-const ASKED_EVERY: usize = 256;
+const CANCEL_INTERVAL: usize = 256;
 
 /// Marks a radius ratio that is out of date.
 pub(super) const STALE: f64 = f64::NAN;
@@ -151,7 +151,7 @@ impl<'a> Improver<'a> {
     /// Takes one attempt from the budget. Returns false if none is left or the run was cancelled.
     #[inline]
     pub(super) fn spend(&mut self) -> bool {
-        if self.budget.is_multiple_of(ASKED_EVERY) && self.watch.ask().is_err() {
+        if self.budget.is_multiple_of(CANCEL_INTERVAL) && self.watch.ask().is_err() {
             self.budget = 0;
         }
         let left = self.budget > 0;

@@ -42,7 +42,7 @@ pub fn optimize(mesh: &mut TetMesh, options: &OptimizeOptions) -> Result<Optimiz
 }
 
 /// Improves a complex in place, including ghosts and frozen faces. Unused points stay in the list. Stops early, with a
-/// valid result, if the watch says so.
+/// valid result, if the watch asks to stop.
 pub fn optimize_complex(complex: &mut Complex, options: &OptimizeOptions, watch: &Watch) -> OptimizeReport {
     let mut improver = Improver::new(std::mem::take(complex), options).watched(*watch);
     improver.run();

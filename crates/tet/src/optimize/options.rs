@@ -5,7 +5,7 @@
 pub enum Effort {
     /// `Fast` with one round of smoothing, for Delaunay meshes of well-placed points.
     Quick,
-    /// Smoothing and flips; insertion and contraction at very bad tetrahedra.
+    /// Smoothing and flips; insertion and contraction at tetrahedra of the lowest quality.
     #[default]
     Fast,
     /// All methods, including small-polyhedron reconnection, on each tetrahedron that is still bad.

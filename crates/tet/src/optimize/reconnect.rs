@@ -1,5 +1,5 @@
-//! Small-polyhedron reconnection: the tetrahedra of a small cavity are exchanged for those with the least strain on the
-//! same vertices and boundary, found by branch and bound. (Marot, Remacle, 'Quality tetrahedral mesh generation with
+//! Small-polyhedron reconnection. Branch and bound replaces the tetrahedra of a small cavity by those with the least
+//! strain on the same vertices and boundary. (Marot, Remacle, 'Quality tetrahedral mesh generation with
 //! HXT', 2020; Liu, Chen, Zheng, 'Small polyhedron reconnection for mesh improvement', 2006.) It includes edge removal,
 //! multi-face removal and all their compositions within the cavity.
 //!

@@ -14,7 +14,7 @@ const HALVINGS: usize = 4;
 /// Relative decrease of the energy below which a vertex has converged.
 const SETTLED: f64 = 1e-3;
 /// Relative decrease of the energy above which the neighbours of a vertex are visited again.
-const STIRRING: f64 = 1e-2;
+const REVISIT_DECREASE: f64 = 1e-2;
 /// Radius ratio below which the thorough improvement leaves the vertices of a tetrahedron to the direct search.
 const HOPELESS: f64 = 0.15;
 /// Rounds of the direct search. Its step halves in a round that finds nothing.
@@ -22,10 +22,10 @@ const MAX_SEARCH_STEPS: usize = 12;
 
 /// Maximum vertices moved at the end of the thorough improvement: one per 20 tetrahedra, but at least 200. On good
 /// surfaces, that covers all.
-const MOST_EASED: (usize, usize) = (20, 200);
+const MAX_EASED_VERTICES: (usize, usize) = (20, 200);
 
 /// Factor of improvement since listing above which a tetrahedron is skipped, since a neighbour's move helped it.
-const HELPED: f64 = 1.05;
+const SKIP_FACTOR: f64 = 1.05;
 
 /// Minimum decrease of the strain for a move.
 const LEAST_EASE: f64 = 0.002;
@@ -58,8 +58,8 @@ impl Improver<'_> {
                 continue;
             }
             // The energy of a hopeless tetrahedron would dominate that of the others.
-            let past_help = strained.get(v as usize).is_some_and(|&s| s);
-            moved += usize::from(if past_help { self.ease_once(v) } else { self.smooth_vertex(v) });
+            let is_hopeless = strained.get(v as usize).is_some_and(|&s| s);
+            moved += usize::from(if is_hopeless { self.ease_once(v) } else { self.smooth_vertex(v) });
         }
         self.refresh();
         self.report.moved += moved;
@@ -107,7 +107,7 @@ impl Improver<'_> {
             for &t in &star.tets {
                 self.quality[t as usize] = STALE;
             }
-            if energy < before * (1.0 - STIRRING) {
+            if energy < before * (1.0 - REVISIT_DECREASE) {
                 for &t in &star.tets {
                     for w in self.c.verts(t) {
                         // A later visit would not gain more for the vertex itself.
@@ -125,17 +125,17 @@ impl Improver<'_> {
     pub(super) fn ease_worst(&mut self, below: f64) -> usize {
         let list = self.worst_first(below);
         let mut lifted = 0;
-        let mut purse = match self.options.effort {
-            Effort::Full => (self.c.real_tets().count() / MOST_EASED.0).max(MOST_EASED.1),
+        let mut budget = match self.options.effort {
+            Effort::Full => (self.c.real_tets().count() / MAX_EASED_VERTICES.0).max(MAX_EASED_VERTICES.1),
             Effort::Quick | Effort::Fast => usize::MAX,
         };
         for &(q, t) in &list {
-            if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * HELPED) {
+            if !self.c.is_real(t) || self.quality[t as usize] >= below.min(q * SKIP_FACTOR) {
                 continue;
             }
             for v in self.c.verts(t) {
-                if self.movable[v as usize] && !self.eased[v as usize] && purse > 0 && self.spend() {
-                    purse -= 1;
+                if self.movable[v as usize] && !self.eased[v as usize] && budget > 0 && self.spend() {
+                    budget -= 1;
                     lifted += usize::from(self.ease_vertex(v));
                 }
             }
@@ -202,7 +202,7 @@ impl Improver<'_> {
     }
 
     /// Best position of a new vertex in a star-shaped cavity, searched from `p`, and the worst radius ratio there.
-    pub(super) fn best_in_room(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
+    pub(super) fn place_in_cavity(&mut self, p: Point3, faces: &[[u32; 3]]) -> (Point3, f64) {
         self.energy.faces.clear();
         self.energy.aim = Aim::Worst;
         self.energy.faces.extend(faces.iter().map(|f| f.map(|w| self.c.points[w as usize])));

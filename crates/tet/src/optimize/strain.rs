@@ -19,7 +19,7 @@ pub(crate) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {
     (c.orient(v) > 0.0).then(|| radius_ratio(p, q, r, s))
 }
 
-/// Penalty of a tetrahedron with this radius ratio. It grows with the logarithm of the ratio below 1/2 and is very
+/// Penalty of a tetrahedron with this radius ratio. It grows with the logarithm of the ratio below 1/2 and is
 /// small above, so that no repair creates more tetrahedra as bad.
 #[inline]
 pub(crate) fn strain(q: f64) -> f64 {

@@ -180,7 +180,7 @@ fn only_needles_keep_tetrahedra_at_a_short_edge_of_the_surface() {
     let (count, least) = at_short_edge(&after);
     assert!(count == 2 && least > 10.0, "{count} {least}");
     assert_eq!(sorted_boundary(&mesh), sorted_boundary(&after));
-    // The thorough improvement finds this result by itself, and keeps the tetrahedra on the needles.
+    // The thorough improvement finds this result alone, and keeps the tetrahedra on the needles.
     let (whole, _) = improve_with(&mesh, 10, Effort::Full);
     let (count, least) = at_short_edge(&whole);
     assert!(count == 2 && least > 10.0, "{count} {least}");
@@ -290,7 +290,7 @@ fn strain_falls_as_shape_improves_and_can_be_turned_back() {
         assert!(ratio_of_strain(s) <= q + 1e-12, "{q}");
         last = s;
     }
-    // One very bad tetrahedron weighs more than several mediocre ones.
+    // One tetrahedron of low quality weighs more than several mediocre ones.
     assert!(strain(0.013) > 2.0 * strain(0.08) + 2.0 * strain(0.2) && strain(0.01) > 6.0 * strain(0.2));
 }
 

@@ -1,5 +1,5 @@
 //! Thorough improvement. After the quick passes, every tetrahedron that is still bad is treated with all methods, worst
-//! first. It stops when nothing improves, or when the cost exceeds the gain ([`Purse`]). Tetrahedra on surface needles
+//! first. It stops when nothing improves, or when the cost exceeds the gain ([`AttemptBudget`]). Tetrahedra on surface needles
 //! never become good and could be tried forever.
 
 use super::Improver;
@@ -11,7 +11,7 @@ const MAX_THOROUGH_PASSES: usize = 8;
 const CAVITIES: [(usize, usize); 2] = [(8, 150), (20, 400)];
 /// Radius ratio below which a tetrahedron is improved at the cost of those on needles.
 const VERY_BAD: f64 = 0.2;
-/// Maximum passes that spare very bad tetrahedra at the cost of needles.
+/// Maximum passes that improve tetrahedra below `VERY_BAD` at the cost of needles.
 const MAX_SPARING_PASSES: usize = 3;
 /// Minimum factor of improvement by moves.
 const GAIN: f64 = 1.1;
@@ -20,14 +20,14 @@ const WORTHWHILE: usize = 100;
 /// Tetrahedra per attempt that is made regardless of success.
 const FREE: usize = 200;
 /// Minimum fraction of the strain that a round must remove, once the free attempts are used up.
-const EASES: f64 = 0.25;
+const MIN_ROUND_GAIN: f64 = 0.25;
 /// Maximum attempts: one per 4 tetrahedra, but at least 100.
 const MOST: (usize, usize) = (4, 100);
 
 /// Budget for treating bad tetrahedra, in attempts. A failed attempt takes some 0.2 ms. The free attempts are followed
 /// by rounds that pay off, up to the maximum.
 #[derive(Debug)]
-struct Purse {
+struct AttemptBudget {
     free: usize,
     most: usize,
     spent: usize,
@@ -35,14 +35,14 @@ struct Purse {
     strain: f64,
 }
 
-impl Purse {
+impl AttemptBudget {
     fn of(tets: usize) -> Self {
         Self { free: tets / FREE, most: (tets / MOST.0).max(MOST.1), spent: 0, strain: f64::INFINITY }
     }
 
     /// True if another round pays off, given the current strain of bad tetrahedra.
-    fn goes_on(&mut self, strain: f64) -> bool {
-        let pays = strain <= (1.0 - EASES) * self.strain;
+    fn pays_off(&mut self, strain: f64) -> bool {
+        let pays = strain <= (1.0 - MIN_ROUND_GAIN) * self.strain;
         self.strain = strain;
         self.spent < self.most && (pays || self.spent < self.free)
     }
@@ -57,14 +57,14 @@ impl Improver<'_> {
     /// Treats all tetrahedra below the stubborn limit, worst first, except those on needles close to the attainable
     /// quality.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
-        let mut purse = Purse::of(self.c.real_tets().count());
+        let mut budget = AttemptBudget::of(self.c.real_tets().count());
         for _ in 0..MAX_THOROUGH_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
-            if !purse.goes_on(self.strain_of_list(&list)) {
+            if !budget.pays_off(self.strain_of_list(&list)) {
                 self.keep_list(list);
                 break;
             }
-            let (tried, changes) = self.treat_each(&list, &mut purse, |s, t| {
+            let (tried, changes) = self.treat_each(&list, &mut budget, |s, t| {
                 let allowed = allowance.of_tet(&s.c.verts(t));
                 allowed >= 1.0 || s.quality[t as usize] < allowed
             });
@@ -81,15 +81,15 @@ impl Improver<'_> {
     fn treat_each(
         &mut self,
         list: &[(f64, u32)],
-        purse: &mut Purse,
+        budget: &mut AttemptBudget,
         wanted: impl Fn(&Self, u32) -> bool,
     ) -> (usize, usize) {
         let (mut tried, mut changes) = (0, 0);
         for &(q, t) in list {
-            if !self.is_current((q, t)) || !self.has_news(t) || !wanted(self, t) {
+            if !self.is_current((q, t)) || !self.surroundings_changed(t) || !wanted(self, t) {
                 continue;
             }
-            if !self.spend() || !purse.spend() {
+            if !self.spend() || !budget.spend() {
                 break;
             }
             tried += 1;
@@ -102,23 +102,23 @@ impl Improver<'_> {
         (tried, changes)
     }
 
-    /// Treats very bad tetrahedra off the needles, even if those on needles become worse.
+    /// Improves tetrahedra below `VERY_BAD` off the needles, even if those on needles become worse.
     pub(super) fn spare_others(&mut self, allowance: Allowance) {
         if allowance.is_empty() {
             return;
         }
         self.allowance = allowance;
         self.reconnection.forget();
-        let mut purse = Purse::of(self.c.real_tets().count());
+        let mut budget = AttemptBudget::of(self.c.real_tets().count());
         for _ in 0..MAX_SPARING_PASSES {
             // Retry all: small moves, which do not count as changes, may decide.
             self.tried.clear();
             let list = self.worst_first(self.options.stubborn_below);
-            if !purse.goes_on(self.strain_of_list(&list)) {
+            if !budget.pays_off(self.strain_of_list(&list)) {
                 self.keep_list(list);
                 break;
             }
-            let (tried, changes) = self.treat_each(&list, &mut purse, Self::is_spared);
+            let (tried, changes) = self.treat_each(&list, &mut budget, Self::is_spared);
             self.keep_list(list);
             if changes * WORTHWHILE <= tried {
                 break;
@@ -131,7 +131,7 @@ impl Improver<'_> {
         list.iter().map(|&(_, t)| self.strain_of(&[t])).sum()
     }
 
-    /// True if a tetrahedron off the needles is very bad, or bad beside a needle.
+    /// True if a tetrahedron off the needles is below `VERY_BAD`, or bad beside a needle.
     fn is_spared(&self, t: u32) -> bool {
         let v = self.c.verts(t);
         (self.quality[t as usize] < VERY_BAD || v.iter().any(|&v| self.allowance.has_needle(v)))
@@ -139,7 +139,7 @@ impl Improver<'_> {
     }
 
     /// True if the surroundings of a tetrahedron have changed since it was tried without success.
-    fn has_news(&self, t: u32) -> bool {
+    fn surroundings_changed(&self, t: u32) -> bool {
         let tried = self.tried.get(t as usize).copied().unwrap_or(0);
         tried == 0 || self.c.verts(t).iter().any(|&v| self.changed.get(v as usize).copied().unwrap_or(0) >= tried)
     }

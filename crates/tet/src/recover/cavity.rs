@@ -73,8 +73,8 @@ impl Cavity {
         }
     }
 
-    /// Finds a tetrahedron that must leave the cavity: one with a face that `p` does not see, or one that encloses a
-    /// vertex, surface edge or frozen face.
+    /// Finds a tetrahedron that must leave the cavity. It has a face that `p` does not see, or it encloses a vertex,
+    /// surface edge or frozen face.
     fn flaw(&self, c: &Complex, edges: &SurfaceEdges, core: &[u32], p: &Point3) -> Option<u32> {
         let mut walls: Vec<[u32; 3]> = Vec::new();
         for &x in &self.tets {

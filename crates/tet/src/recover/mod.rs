@@ -86,9 +86,9 @@ pub(super) fn recover(
         r.dissolve();
         let total = summary.missing_edges + summary.missing_triangles;
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
-        let in_vain = r.recover_edges(&mut lost_edges);
+        let abandoned = r.recover_edges(&mut lost_edges);
         r.stopped.map_or(Ok(()), Err)?;
-        if in_vain && r.met.is_none() {
+        if abandoned && r.met.is_none() {
             break;
         }
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
@@ -174,18 +174,18 @@ impl<'a> Recovery<'a> {
     /// Recovers edges and removes them from `lost`. Returns true if it gave up because flips are hopeless.
     fn recover_edges(&mut self, lost: &mut Vec<[u32; 2]>) -> bool {
         let missing = lost.clone();
-        let (mut tried, mut failed, mut in_vain) = (0, 0, false);
+        let (mut tried, mut failed, mut abandoned) = (0, 0, false);
         lost.retain(|&edge| {
-            if in_vain || self.met.is_some() || self.stopped.is_some() {
+            if abandoned || self.met.is_some() || self.stopped.is_some() {
                 return true;
             }
             tried += 1;
             let fails = !self.recover_edge(edge);
             failed += usize::from(fails);
-            in_vain = self.round == 0 && fails && failed == MANY && 2 * failed > tried && self.is_turned(&missing);
+            abandoned = self.round == 0 && fails && failed == MANY && 2 * failed > tried && self.is_turned(&missing);
             fails
         });
-        in_vain
+        abandoned
     }
 
     /// True if most of the edges lie in planes up to rounding.

@@ -61,13 +61,13 @@ impl Ord for Task {
     }
 }
 
-/// Refines a carved complex in place. `bounds` are volume bounds of the tetrahedra, by slot; it may be empty. `go_on`
+/// Refines a carved complex in place. `bounds` are volume bounds of the tetrahedra, by slot; it may be empty. `continues`
 /// is called periodically with the number of points added.
 pub fn refine_complex(
     c: &mut Complex,
     goals: &Goals,
     bounds: Vec<f64>,
-    mut go_on: impl FnMut(usize) -> bool,
+    mut continues: impl FnMut(usize) -> bool,
 ) -> RefineReport {
     let mut r = Refiner {
         c,
@@ -95,7 +95,7 @@ pub fn refine_complex(
             continue;
         }
         visits += 1;
-        if visits.is_multiple_of(1024) && !go_on(report.points) {
+        if visits.is_multiple_of(1024) && !continues(report.points) {
             break;
         }
         if report.points >= limit {

@@ -35,7 +35,7 @@ impl std::fmt::Debug for SizeLimit<'_> {
     }
 }
 
-/// Edge length wanted at each vertex of a surface: the mean length of its edges, or less if one of them is very short.
+/// Edge length wanted at each vertex of a surface: the mean length of its edges, or less if one of them is much shorter.
 /// Vertices without edges get 0.
 pub fn vertex_sizes(surface: &TriMesh) -> Vec<f64> {
     let n = surface.points.len();

@@ -40,7 +40,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
 
 /// Checks that an array has all its values.
 fn full(sections: &AmiraSections, array: &AmiraArray, found: usize) -> Result<(), AmiraError> {
-    if found == sections.count(array.of) { Ok(()) } else { Err(AmiraError::Missing { what: "the data of the radius" }) }
+    if found == sections.count(array.of) { Ok(()) } else { Err(AmiraError::Missing { what: "complete radius data" }) }
 }
 
 /// Edges as polylines, with the radii along them. Vertices are the first points. Edge points follow, except the ends of

@@ -5,6 +5,7 @@ use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphPlace};
 use crate::network::radii::plain;
+use anastomesh_mesh::units::counted;
 
 /// Names of node id columns.
 const IDS: &[&str] = &["id", "nodeid", "node", "vertexid", "vertex", "name", "label", "index", ""];
@@ -155,7 +156,8 @@ fn row_error(error: &csv::Error, table: Table, before: usize) -> CsvError {
     let line = before + error.position().map_or(1, |p| p.line() as usize);
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} columns where the first row has {expected_len}")
+            let found = counted(usize::try_from(*len).unwrap_or(usize::MAX), "column");
+            format!("{found} where the first row has {expected_len}")
         }
         _ => error.to_string(),
     };

@@ -52,7 +52,7 @@ fn radii_stand_at_nodes_at_edges_or_at_their_ends() {
     let short = bytes(&[[2.0]]);
     assert_eq!(
         fault(&[files[0], files[1], ("radii.npy", &short)]),
-        "radii.npy: has 1 rows, and nodes.npy has 2: there has to be one for each"
+        "radii.npy: has 1 row, and nodes.npy has 2: give one row for each"
     );
     let roots = ints(&[[1], [2]]);
     let radius = bytes(&[[1.0], [1.0]]);

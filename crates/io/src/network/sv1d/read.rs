@@ -4,6 +4,7 @@ use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions, NodeName
 use crate::network::polylines::{Polylines, Radii};
 use crate::text::{TextFault, Words, shown};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 use rustc_hash::FxHashMap;
 use std::f64::consts::PI;
 
@@ -35,7 +36,7 @@ pub enum Sv1dError {
         name: String,
     },
     /// A joint refers to a segment list that is missing or belongs to another joint.
-    #[error("line {line}: the joint has no segment list '{name}' of its own: correct it")]
+    #[error("line {line}: the segment list '{name}' is missing, or belongs to another joint: correct it")]
     NoList {
         /// Line of the file, from 1.
         line: usize,
@@ -51,7 +52,7 @@ pub enum Sv1dError {
         area: f64,
     },
     /// There are no segments.
-    #[error("the file has no SEGMENT ({nodes} nodes): is it the input of a one-dimensional solver?")]
+    #[error("the file has no SEGMENT ({}): is it the input of a one-dimensional solver?", counted(*nodes, "node"))]
     NoSegments {
         /// Number of nodes.
         nodes: usize,

@@ -31,7 +31,7 @@ pub(super) struct LegacyArray<'a> {
     pub name: String,
     /// Number of values.
     pub count: usize,
-    /// Number type; none for bits.
+    /// Number type; `None` for bits.
     scalar: Option<Scalar>,
     bytes: &'a [u8],
     /// Position of its start.

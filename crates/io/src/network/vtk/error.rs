@@ -53,7 +53,7 @@ pub enum VtkLegacyError {
     },
     /// The array is shorter than announced.
     #[error(
-        "{place}: {array} needs {count} values, more than the rest of the file contains; \
+        "{place}: the number of values of {array} is {count}, more than the rest of the file contains; \
          correct the count, or copy the file again if it is truncated"
     )]
     CutShort {
@@ -108,7 +108,7 @@ pub enum VtkLegacyError {
     },
     /// A line refers to a missing point.
     #[error(
-        "line cell {line} (from 0) refers to point {point} (from 0), but the file has {points} points: correct the list of cells"
+        "line cell {line} (from 0) refers to point {point} (from 0), but the file has {}: correct the list of cells", counted(*points, "point")
     )]
     UnknownPoint {
         /// Line of the file, from 1.
@@ -119,7 +119,7 @@ pub enum VtkLegacyError {
         points: usize,
     },
     /// There are no lines.
-    #[error("the file has no lines ({others} other cells): give a network, lines with radii")]
+    #[error("the file has no lines ({}): give a network, lines with radii", counted(*others, "other cell"))]
     NoLines {
         /// Number of other cells.
         others: usize,

@@ -55,7 +55,7 @@ pub enum VtpError {
     },
     /// A line refers to a missing point.
     #[error(
-        "line {line} (from 0) refers to point {point} (from 0), but the file has {points} points: correct the connectivity"
+        "line {line} (from 0) refers to point {point} (from 0), but the file has {}: correct the connectivity", counted(*points, "point")
     )]
     UnknownPoint {
         /// Line of the file, from 1.

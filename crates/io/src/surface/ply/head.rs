@@ -134,8 +134,7 @@ fn encoding(word: &[u8], place: Place) -> Result<Encoding, SurfaceFault> {
 }
 
 fn property(words: &mut Words, place: Place) -> Result<Property, SurfaceFault> {
-    let scalar =
-        |word: &[u8]| scalar_of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a type of numbers", place));
+    let scalar = |word: &[u8]| scalar_of(word).ok_or_else(|| SurfaceFault::unexpected(word, "a number type", place));
     let kind = words.need_here("the property's type")?;
     if kind != b"list" {
         let value = scalar(kind)?;

@@ -34,7 +34,7 @@ pub enum MeditFault {
         kind: String,
     },
     /// A list occurs twice.
-    #[error("line {line}: second list of {kind}: merge the lists")]
+    #[error("line {line}: duplicate list of {kind}: merge the lists")]
     Repeated {
         /// Line of the file, from 1.
         line: usize,
@@ -42,7 +42,7 @@ pub enum MeditFault {
         kind: &'static str,
     },
     /// A cell refers to a missing point.
-    #[error("{kind} {cell} refers to point {index}, but points are numbered from 1 to {points}: correct it")]
+    #[error("cell {cell} of {kind} refers to point {index}, but points are numbered from 1 to {points}: correct it")]
     BadIndex {
         /// List of the cell.
         kind: &'static str,

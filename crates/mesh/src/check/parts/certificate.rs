@@ -1,4 +1,4 @@
-//! Certificate of one part, checked by itself.
+//! Certificate of one part, checked separately.
 
 use super::sums::{face_sum, point_sum};
 use super::{Certificate, Fault, HeldCap, HeldJoint, HeldSurface, PartView};
@@ -64,8 +64,8 @@ pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
         joints: vec![HeldJoint::default(); part.joints.len()],
         ..Certificate::default()
     };
-    let all_there = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
-    if !has_sound_arrays(mesh) || !all_there {
+    let are_indices_valid = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
+    if !has_sound_arrays(mesh) || !are_indices_valid {
         certificate.take([cells::finite_points(mesh)]);
         certificate.unsound = true;
         return certificate;
@@ -289,7 +289,8 @@ fn is_connected(adjacency: &TetAdjacency) -> bool {
     left == 0
 }
 
-/// Returns the owner of each boundary face. Faces of joints and caps must be boundary faces, turned as they are, each named once.
+/// Returns the owner of each boundary face. Faces of joints and caps must be boundary faces
+/// of the same orientation, each listed once.
 fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let points = &part.mesh.points;
     let mut named: Vec<([u32; 3], Owner, [u32; 3])> = Vec::new();

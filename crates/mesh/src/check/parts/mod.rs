@@ -34,8 +34,11 @@
 //!   joint.
 //! - *Labels and caps*: faces in no cap are wall by construction, and every cap lies in one part.
 //!
-//! The check is stricter than that of a whole mesh. These are always faults: two joints of one part with a common
-//! vertex, a joint that is no disc, and faces common to two parts without a joint.
+//! The check is stricter than that of a whole mesh. These are always faults:
+//!
+//! - two joints of one part with a common vertex
+//! - a joint that is not a disc
+//! - faces common to two parts without a joint
 //!
 //! [`Parts`] must give consistent ids; walls and joints are verified to be the certified ones.
 

@@ -5,7 +5,7 @@ use crate::check::result::{KEPT_OFFENDERS, Line, LineResult, Offender, OffenderK
 use std::collections::BTreeMap;
 
 /// Maximum offenders held at a time.
-const MOST_HELD: usize = 4096;
+const MAX_HELD: usize = 4096;
 
 /// Offenders of conditions, in the numbering of the whole.
 #[derive(Debug, Default)]
@@ -20,7 +20,7 @@ impl Tallies {
         let (all, held) = self.0.entry(line).or_default();
         *all += count;
         held.extend(offenders);
-        if held.len() > MOST_HELD {
+        if held.len() > MAX_HELD {
             *all -= tidy(held);
             held.truncate(KEPT_OFFENDERS);
         }

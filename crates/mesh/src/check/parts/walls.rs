@@ -13,7 +13,7 @@ use std::io;
 use std::sync::Arc;
 
 /// Parts whose neighbours are searched at a time.
-const LOOKED_UP: usize = 2048;
+const SEARCH_BATCH: usize = 2048;
 
 /// Bytes of a wall besides its faces.
 const OVERHEAD: u64 = 200;
@@ -88,7 +88,7 @@ impl Meetings {
 pub(super) fn meetings(reader: Reader, boxes: &Boxes, memory: usize) -> io::Result<Meetings> {
     let mut all = Meetings::default();
     let mut walls: Walls = FxHashMap::default();
-    for some in boxes.along_curve().chunks(LOOKED_UP) {
+    for some in boxes.along_curve().chunks(SEARCH_BATCH) {
         let pairs: Vec<[u32; 2]> = some.par_iter().flat_map_iter(|&part| boxes.partners(part)).collect();
         let mut rest = &pairs[..];
         while !rest.is_empty() {
@@ -270,8 +270,8 @@ fn common_edges(
     }
     edges.sort_by_key(|edge| (edge.0, edge.1));
     for run in edges.chunk_by(|x, y| x.0 == y.0) {
-        let of_both = run[0].1 != run[run.len() - 1].1;
-        if of_both && run.len() > 2 {
+        let is_shared = run[0].1 != run[run.len() - 1].1;
+        if is_shared && run.len() > 2 {
             found.push((run[0].0, run[0].2));
         }
     }

@@ -136,18 +136,18 @@ impl<'a> Dig<'a> {
     /// Cavity in which the vertex lies well off all faces. Nearly flat tetrahedra on both sides are included.
     fn deep(&self, mut tets: Vec<u32>) -> Option<Dug> {
         let mut best: Option<(f64, Dug)> = None;
-        let mut deepest_yet = (f64::NEG_INFINITY, 0);
+        let mut max_depth = (f64::NEG_INFINITY, 0);
         for step in 0..DEEP_STEPS {
             let walls = self.s.outer(&tets);
             let deepest = self.course.deepest(self.s, &walls);
-            if deepest.depth > deepest_yet.0 {
-                deepest_yet = (deepest.depth, step);
-            } else if step > deepest_yet.1 + PATIENCE && deepest_yet.0 < DEEP {
+            if deepest.depth > max_depth.0 {
+                max_depth = (deepest.depth, step);
+            } else if step > max_depth.1 + PATIENCE && max_depth.0 < DEEP {
                 break;
             }
-            let so_far = best.as_ref().map_or(0.0, |b| b.0);
-            let joined = self.depth_of_join(&walls).filter(|&depth| depth > so_far);
-            let better = deepest.depth > so_far || deepest.depth >= DEEP;
+            let best_so_far = best.as_ref().map_or(0.0, |b| b.0);
+            let joined = self.depth_of_join(&walls).filter(|&depth| depth > best_so_far);
+            let better = deepest.depth > best_so_far || deepest.depth >= DEEP;
             if (joined.is_some() || better) && self.keeps(&tets, &walls) {
                 if let Some(depth) = joined.filter(|_| self.joins(&walls)) {
                     if depth >= DEEP {
@@ -155,13 +155,13 @@ impl<'a> Dig<'a> {
                     }
                     best = Some((depth, Dug::Joins(tets.clone())));
                 }
-                let so_far = best.as_ref().map_or(0.0, |b| b.0);
-                if (deepest.depth > so_far || deepest.depth >= DEEP)
+                let best_so_far = best.as_ref().map_or(0.0, |b| b.0);
+                if (deepest.depth > best_so_far || deepest.depth >= DEEP)
                     && let Some(weight) = self.place(&walls, &deepest)
                 {
                     best = Some((deepest.depth.min(DEEP), Dug::Place(tets.clone(), weight)));
                 }
-            } else if so_far >= DEEP {
+            } else if best_so_far >= DEEP {
                 break;
             }
             let further =
@@ -220,15 +220,15 @@ impl<'a> Dig<'a> {
         for step in 0..STEPS {
             let walls = self.s.outer(&tets);
             let view = self.view(&walls);
-            let so_far = best.as_ref().map_or(0, |b| b.1.width());
+            let best_so_far = best.as_ref().map_or(0, |b| b.1.width());
             let joins = self.joins(&walls);
-            let better = view.width() >= WIDE || view.width() > so_far;
+            let better = view.width() >= WIDE || view.width() > best_so_far;
             if (joins || better) && (step == 0 || self.keeps(&tets, &walls)) {
                 if joins {
                     return Some(Dug::Joins(tets));
                 }
                 best = Some((tets.clone(), view));
-            } else if so_far >= WIDE {
+            } else if best_so_far >= WIDE {
                 break;
             }
             let further = if view.width() < WIDE { self.widen(&mut tets, &view) } else { self.lengthen(&mut tets) };

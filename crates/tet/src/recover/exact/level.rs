@@ -38,13 +38,13 @@ const MARGIN: f64 = 1e-3;
 
 /// Maximum tetrahedra removed, over all these corners, so that a corner sees the whole half. Needles need many; apices
 /// further down would cost more.
-const IN_VIEW: usize = 1000;
+const MAX_REMOVED_TETS: usize = 1000;
 
 /// Cost of a refused exchange, in exchanges.
 const REFUSED: usize = 8;
 
 /// Apex heights to try before the cavity is enlarged.
-const AMPLE: usize = 4;
+const HEIGHTS_BEFORE_ENLARGING: usize = 4;
 
 /// Maximum facets used to estimate the plane of one facet.
 const AROUND: usize = 200;
@@ -268,7 +268,7 @@ impl<'a> Level<'a> {
             }
             work -= 1;
             let flat = self.quadrilateral(edge, plane);
-            let convex = flat.filter(|q| self.convex(q, plane) && self.may_be(q.across, q.edge, [a, b]));
+            let convex = flat.filter(|q| self.convex(q, plane) && self.is_edge_allowed(q.across, q.edge, [a, b]));
             let Some(Diagonal { across: [x, y], .. }) = convex.filter(|q| self.exchange(q)) else {
                 work = if convex.is_some() { work.saturating_sub(REFUSED) } else { work };
                 refused += 1;
@@ -367,7 +367,7 @@ impl<'a> Level<'a> {
     }
 
     /// True if an edge may be made as an intermediate. It must not make a triangle that is too thin.
-    fn may_be(&self, [x, y]: [u32; 2], corners: [u32; 2], wanted: [u32; 2]) -> bool {
+    fn is_edge_allowed(&self, [x, y]: [u32; 2], corners: [u32; 2], wanted: [u32; 2]) -> bool {
         let (p, along) = (self.s.point(x), self.s.point(y) - self.s.point(x));
         let high = |&v: &u32| along.cross(&(self.s.point(v) - p)).norm() > self.thin * along.norm();
         sorted(x, y) == sorted(wanted[0], wanted[1]) || self.keep.contains(x, y) || corners.iter().all(high)
@@ -405,7 +405,7 @@ impl<'a> Level<'a> {
             let kernel = Kernel::new(self.s, origin, &sector.faces);
             levels.iter().find_map(|level| kernel.apex(self.s, level.max(least)).ok())
         };
-        let (ample, scant) = LEVELS.split_at(AMPLE);
+        let (ample, scant) = LEVELS.split_at(HEIGHTS_BEFORE_ENLARGING);
         if let Some(found) = self.corner(wider, &sector, ample, least) {
             return Some(found);
         }
@@ -413,7 +413,7 @@ impl<'a> Level<'a> {
             return Some(self.raised(origin, sector, apex, least));
         }
         let (mut wide, narrow) = (sector.clone(), wider.cavity.len());
-        if let Some(apex) = wider.apex(&mut wide, LEVELS[AMPLE].max(least), STEPS) {
+        if let Some(apex) = wider.apex(&mut wide, LEVELS[HEIGHTS_BEFORE_ENLARGING].max(least), STEPS) {
             return Some(self.raised(origin, wide, apex, least));
         }
         wider.cavity.truncate(narrow);
@@ -438,10 +438,10 @@ impl<'a> Level<'a> {
         high.retain(|&(height, _)| height > self.clearance);
         high.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         let free = |v: u32| (v as usize) >= self.points && !self.within.contains(&v);
-        let mut purse = IN_VIEW;
+        let mut budget = MAX_REMOVED_TETS;
         high.into_iter().take(HIGHEST).find_map(|(height, w)| {
             let least = (MARGIN * height).max(self.clearance);
-            wider.seen_from(sector, w, (least, &mut purse), free).map(|sector| (sector, Apex::Vertex(w)))
+            wider.seen_from(sector, w, (least, &mut budget), free).map(|sector| (sector, Apex::Vertex(w)))
         })
     }
 

@@ -147,10 +147,10 @@ impl<'a> Push<'a> {
         let mut left = std::mem::take(&mut self.left);
         #[cfg(test)]
         if WIDER_FIRST.get() {
-            self.clear_wider(&mut left, watch)?;
+            self.push_into_wider_cavities(&mut left, watch)?;
         }
         self.clear(&mut left, watch)?;
-        self.clear_wider(&mut left, watch)?;
+        self.push_into_wider_cavities(&mut left, watch)?;
         while !left.is_empty() {
             let before = left.len();
             let moved = left.iter().filter(|&&(host, v)| self.slide(host, v)).count();
@@ -158,7 +158,7 @@ impl<'a> Push<'a> {
                 break;
             }
             self.clear(&mut left, watch)?;
-            self.clear_wider(&mut left, watch)?;
+            self.push_into_wider_cavities(&mut left, watch)?;
             if left.len() == before {
                 break;
             }
@@ -197,7 +197,7 @@ impl<'a> Push<'a> {
     }
 
     /// Pushes vertices without clearance into wider cavities.
-    fn clear_wider(&mut self, left: &mut Vec<(Host, u32)>, watch: &Watch) -> Result<(), TetError> {
+    fn push_into_wider_cavities(&mut self, left: &mut Vec<(Host, u32)>, watch: &Watch) -> Result<(), TetError> {
         let mut level = WIDER_FROM;
         #[cfg(test)]
         if WIDER_FIRST.get() {

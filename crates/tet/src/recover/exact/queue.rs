@@ -25,7 +25,7 @@ const LEVEL_AFTER: u64 = 1;
 const LARGE: usize = 100;
 
 /// Maximum waiting parts before a strategy is abandoned: a constant, plus this fraction of all parts.
-const WAITING: (usize, f64) = (16, 0.25);
+const MAX_WAITING: (usize, f64) = (16, 0.25);
 
 /// Error of a failed recovery, and a flag for retry.
 pub(super) struct Failed {
@@ -109,11 +109,11 @@ impl<'a, 'b> Queue<'a, 'b> {
                 Ok(()) => saved.since.push(part),
                 Err(Failed { error, again: true }) => {
                     stuck.push(part);
-                    if stuck.len() > WAITING.0 + (WAITING.1 * parts.len() as f64) as usize {
+                    if stuck.len() > MAX_WAITING.0 + (MAX_WAITING.1 * parts.len() as f64) as usize {
                         return Err(Failed { error, again: true });
                     }
                     last = Some(error);
-                    self.go_back(&mut saved, round)?;
+                    self.backtrack(&mut saved, round)?;
                 }
                 Err(failed) => return Err(failed),
             }
@@ -126,7 +126,7 @@ impl<'a, 'b> Queue<'a, 'b> {
     }
 
     /// Undoes the last part: restores the saved state and repeats the parts recovered since.
-    fn go_back(&mut self, saved: &mut Saved<'a, '_>, round: u64) -> Result<(), Failed> {
+    fn backtrack(&mut self, saved: &mut Saved<'a, '_>, round: u64) -> Result<(), Failed> {
         // The whole complex is copied.
         let counted = self.watch.spend(saved.push.s.c.slots());
         counted.map_err(|stop| Failed { error: stop.into(), again: false })?;

@@ -41,10 +41,10 @@ impl RecoveryStrategy {
 
     /// Last strategies, for parts that may be flat. They exchange edges in planes whatever the gain.
     pub(crate) const LAST: [Self; 7] = [
-        Self::deep(true, 0).in_any_case(),
-        Self::level(1).in_any_case(),
-        Self::deep(true, 2).in_any_case(),
-        Self::level(3).in_any_case(),
+        Self::deep(true, 0).unconditional(),
+        Self::level(1).unconditional(),
+        Self::deep(true, 2).unconditional(),
+        Self::level(3).unconditional(),
         Self::deep(false, 4),
         Self::deep(false, 5),
         Self::deep(false, 6),
@@ -63,7 +63,7 @@ impl RecoveryStrategy {
         Self { deep: true, vertices: VERTICES_DEEP, ..way }
     }
 
-    const fn in_any_case(self) -> Self {
+    const fn unconditional(self) -> Self {
         Self { level: Some(f64::INFINITY), ..self }
     }
 

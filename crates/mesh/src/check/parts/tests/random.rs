@@ -24,7 +24,7 @@ fn any_cut() -> impl Strategy<Value = MemoryParts> {
 
 /// Kinds of damage to a part.
 #[derive(Clone, Copy, Debug)]
-enum Harm {
+enum Damage {
     MovePoint(f64),
     FlipTet,
     DropTet,
@@ -32,18 +32,18 @@ enum Harm {
     ExchangeVertex,
 }
 
-fn any_harm() -> impl Strategy<Value = Harm> {
+fn any_damage() -> impl Strategy<Value = Damage> {
     prop_oneof![
-        (0.0..1.0_f64).prop_map(Harm::MovePoint),
-        Just(Harm::FlipTet),
-        Just(Harm::DropTet),
-        Just(Harm::CopyTet),
-        Just(Harm::ExchangeVertex),
+        (0.0..1.0_f64).prop_map(Damage::MovePoint),
+        Just(Damage::FlipTet),
+        Just(Damage::DropTet),
+        Just(Damage::CopyTet),
+        Just(Damage::ExchangeVertex),
     ]
 }
 
 /// Damages a tetrahedron without a vertex in a joint. Returns false if nothing was done.
-fn harm(cut: &mut MemoryParts, harm: Harm, part: usize, at: usize) -> bool {
+fn harm(cut: &mut MemoryParts, harm: Damage, part: usize, at: usize) -> bool {
     let next = cut.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
     let part = part % cut.pieces.len();
     let piece = &mut cut.pieces[part];
@@ -55,17 +55,19 @@ fn harm(cut: &mut MemoryParts, harm: Harm, part: usize, at: usize) -> bool {
         return false;
     }
     match harm {
-        Harm::MovePoint(by) => piece.mesh.points[piece.mesh.tets[tet][0] as usize] += Vec3::new(by, 0.3 * by, 0.1 * by),
-        Harm::FlipTet => piece.mesh.tets[tet].swap(0, 1),
-        Harm::DropTet => {
+        Damage::MovePoint(by) => {
+            piece.mesh.points[piece.mesh.tets[tet][0] as usize] += Vec3::new(by, 0.3 * by, 0.1 * by)
+        }
+        Damage::FlipTet => piece.mesh.tets[tet].swap(0, 1),
+        Damage::DropTet => {
             piece.mesh.tets.remove(tet);
             piece.tets.remove(tet);
         }
-        Harm::CopyTet => {
+        Damage::CopyTet => {
             piece.mesh.tets.push(piece.mesh.tets[tet]);
             piece.tets.push(next);
         }
-        Harm::ExchangeVertex => piece.mesh.tets[tet][0] = other,
+        Damage::ExchangeVertex => piece.mesh.tets[tet][0] = other,
     }
     cut.certify();
     true
@@ -82,7 +84,7 @@ proptest! {
 
     /// For any damage inside a part, the same conditions fail.
     #[test]
-    fn harmed_parts_fail_as_the_whole_does(cut in any_cut(), how in any_harm(), part in 0..12_usize, at in 0..10_000_usize) {
+    fn harmed_parts_fail_as_the_whole_does(cut in any_cut(), how in any_damage(), part in 0..12_usize, at in 0..10_000_usize) {
         let mut cut = cut;
         if harm(&mut cut, how, part, at) {
             let (parts, whole) = (cut.check(), cut.whole());
