@@ -74,7 +74,14 @@ fn a_faithful_mesh_is_compared_in_four_rows() {
     assert!(row("radius   ").contains("section error median "));
     assert!(row("lumen    ").contains(", given network 200.8"));
     assert!(row("changes  ").ends_with("nothing moved, shrunk, fused or dropped"));
-    assert!(row("overlaps ").ends_with("0 edge pairs (0 before refinement)"));
+    assert!(said.contains("the network gives a valid mesh as it is: nothing was moved"), "{said}");
+    let mut crossing = Swc::default();
+    crossing.line([-20.0, 0.0, 0.0], [20.0, 0.0, 0.0], 2.0, 1.0, None);
+    crossing.line([0.0, -20.0, 0.5], [0.0, 20.0, 0.5], 2.0, 1.0, None);
+    let made = mesh(&crossing.save(&folder, "crossing.swc"), &out, &["--refine"]);
+    let said = ends(&made, FINE, "valid");
+    let overlaps = said.lines().find(|line| line.starts_with("overlaps ")).unwrap_or_else(|| panic!("{said}"));
+    assert!(overlaps.contains("0 edge pairs (") && overlaps.contains(" before refinement"), "{said}");
     let refined = run("refine", &[&fixture("tree_30.swc"), Path::new("-o"), &folder.path().join("b.vtp")], &[]);
     let said = ends(&refined, FINE, "no vessels overlap");
     assert!(

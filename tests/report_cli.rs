@@ -35,6 +35,9 @@ fn holds(html: &str, words: &[&str]) {
     }
 }
 
+/// Two vessels that cross.
+const CROSSING: &str = "1 0 -20 0 0 1 -1\n2 0 20 0 0 1 1\n3 0 0 -20 0.5 1 -1\n4 0 0 20 0.5 1 3\n";
+
 #[test]
 fn a_mesh_and_its_check() {
     let folder = folder();
@@ -48,7 +51,6 @@ fn a_mesh_and_its_check() {
         "Validity",
         "Shape of the tetrahedra",
         "Accuracy against the network",
-        "Refinement",
         "Blocks and times",
         "Inlets and outlets",
         "Command and options",
@@ -107,6 +109,11 @@ fn refined_networks_filled_surfaces_and_blocks_that_fail() {
     let folder = folder();
     let out = folder.path().join("r.html");
     let report = ["-q", "--report", out.to_str().expect("a path")];
+    let crossing = folder.path().join("crossing.swc");
+    fs::write(&crossing, CROSSING).expect("written");
+    let refines = ["-q", "--refine", "--report", out.to_str().expect("a path")];
+    assert_code(&mesh(&crossing, &folder.path().join("c.vtu"), &refines), FINE);
+    holds(&page(&out), &["Displacement of the nodes", "<h2>Refinement</h2>"]);
     let network = folder.path().join("n.vtp");
     assert_code(&run("refine", &[&fixture("tree_30.vtp"), Path::new("-o"), &network], &report), FINE);
     holds(&page(&out), &["no vessels overlap", "Displacement of the nodes", "<h2>Refinement</h2>"]);

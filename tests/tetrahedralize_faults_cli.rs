@@ -260,7 +260,7 @@ fn strict_refuses_what_would_be_left_out() {
     refuse("a.poly", &all, &["--strict"], &parts);
     refuse("a.poly", &all, &["--tetgen", "pY", "--strict"], &parts);
     let segment_only = all.replace("4 9 10 12 11", "2 18 19").replace("4 1 13 14 5", "2 18 19");
-    refuse("a.poly", segment_only, &["--strict"], &["1 segments", "points 18-19 (points count from 1"]);
+    refuse("a.poly", segment_only, &["--strict"], &["1 segment outside", "points 18-19 (points count from 1"]);
     // Duplicate facets are listed by their numbers.
     refuse(
         "a.poly",

@@ -182,7 +182,7 @@ fn of_tube(
 ///
 /// # Errors
 /// The wall cannot be created, has a different topology than the skeleton, or cannot be capped; `Stopped` if the watch
-/// says so.
+/// stops it.
 pub fn cluster_surface(
     id: ClusterId,
     cluster: &Cluster,

@@ -38,7 +38,7 @@ impl Astray {
     /// Compares a wall with the vessels of its cluster.
     ///
     /// # Errors
-    /// [`Stop`] if the watch says so.
+    /// [`Stop`] if the watch stops it.
     pub(super) fn of(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Self, Stop> {
         Ok(Self { outside: outside(wall, cluster, watch)?, fused: fused(wall, cluster, watch)? })
     }

@@ -30,10 +30,10 @@ pub(super) struct Loops {
 }
 
 impl Loops {
-    /// Loops of a cluster whose wall has so many handles.
+    /// Loops of a cluster whose wall has this number of handles.
     ///
     /// # Errors
-    /// [`Stop`] if the watch says so.
+    /// [`Stop`] if the watch stops it.
     pub fn of(cluster: &Cluster, handles: i64, watch: &Watch) -> Result<Self, Stop> {
         let graph = Graph::of(&cluster.tubes);
         let all = graph.closing.len() as i64;

@@ -172,7 +172,7 @@ fn worst_ratio(block: &Finished) -> f64 {
 /// Makes a block with the first strategy that succeeds: no error, no flat or slim tetrahedron, no fault in its own check.
 ///
 /// Otherwise the best block is returned. If no attempt gives a block, the failure of the first is returned, because the
-/// dump of the input reproduces it. The attempts end early if `is_over` says so.
+/// dump of the input reproduces it. The attempts end early if `is_over` is true.
 fn first_good(
     block: &str,
     attempts: Vec<BlockAttempt>,

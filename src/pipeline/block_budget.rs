@@ -9,7 +9,7 @@ use crate::partition::{Cluster, ClusterId};
 use anastomesh_mesh::budget::{Budget, OverBudget, Stop};
 use anastomesh_tet::parts::Watch;
 
-/// Maximum operations of an attempt: a constant, plus so many per expected operation. Attempts that succeed take at most
+/// Maximum operations of an attempt: a constant, plus a number per expected operation. Attempts that succeed take at most
 /// three times the expected operations on the shared networks.
 const ATTEMPT: Effort = Effort { constant: 3e7, per_operation: 8.0 };
 

@@ -1,9 +1,9 @@
-//! Effort for retries in a run. Blocks that fail take the full budget as long as failures are rare. A network on which the
-//! run has already spent much in vain gets quick attempts only, so that it ends in a typed error in reasonable time.
+//! Effort for retries in a run. Blocks that fail take the full budget as long as failures are rare. If a
+//! run has spent much on failed blocks, further blocks get quick attempts only. The run then ends in reasonable time.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Operations of failed blocks after which further blocks get a reduced budget: a constant, plus so many per expected
+/// Operations of failed blocks after which further blocks get a reduced budget: a constant, plus a number per expected
 /// operation of the run. The expected operations alone take the time of the estimate.
 const MUCH: [f64; 2] = [6e8, 10.0];
 
@@ -16,7 +16,7 @@ const ALL_CLUSTERS: f64 = 2e10;
 /// Bounds of a cluster's share of it. The smaller one lets a bifurcation be tried in every way.
 const CLUSTER: [f64; 2] = [3e7, 1e8];
 
-/// Maximum operations of all attempts at a cluster: a constant, plus so many per expected operation of the usual one.
+/// Maximum operations of all attempts at a cluster: a constant, plus a number per expected operation of the usual one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     pub constant: f64,
@@ -52,7 +52,7 @@ impl Ledger {
         self.in_vain.fetch_add(operations, Ordering::Relaxed);
     }
 
-    /// Effort for each of so many clusters. Must not be asked while blocks are made, as results would depend on the order.
+    /// Effort for each cluster of a run with this number of clusters. Must not be asked while blocks are made, as results would depend on the order.
     pub fn effort(&self, clusters: usize) -> Effort {
         if self.in_vain() > self.much() { Effort::REDUCED } else { Effort::full(clusters) }
     }

@@ -72,7 +72,7 @@ pub struct Estimate {
 impl Estimate {
     /// Of all blocks of a network.
     pub(crate) fn of(partition: &Layout, plan: &MeshPlan) -> Self {
-        let clusters = partition.clusters().map(|cluster| cluster_cost(&cluster, plan));
+        let clusters = partition.clusters().map(|cluster| possible_cost(&cluster, plan));
         let connectors = partition.cuts().map(|cut| connector_cost(&cut, plan));
         Self::sum(clusters.chain(connectors))
     }
@@ -172,6 +172,13 @@ fn gibibytes(bytes: u64) -> String {
         large if large > 2048.0 => format!("{:.1} TiB", large / 1024.0),
         usual => format!("{usual:.1} GiB"),
     }
+}
+
+/// Cost of a cluster. One whose grid does not fit into memory fails before it is made, and costs only what it is without.
+fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
+    let cost = cluster_cost(cluster, plan);
+    let without_grid = of_tets(cost.tets);
+    if cost.bytes > plan.memory && without_grid.bytes <= plan.memory { without_grid } else { cost }
 }
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {

@@ -41,7 +41,7 @@ impl<'a> Workshop<'a> {
         Self { skeleton, plan, store, effort: Effort::full(1) }
     }
 
-    /// The same with the effort for each of so many clusters. Not to be called while blocks are made.
+    /// Shop with the effort for each cluster of a run with this number of clusters. Must not be called while blocks are made.
     pub fn among(self, clusters: usize) -> Self {
         Self { effort: self.store.ledger().effort(clusters), ..self }
     }

@@ -73,8 +73,8 @@ impl Limits {
     }
 }
 
-/// Nodes that a listed change may move far: overlaps that required it, nodes of many vessels, which are split, and vessels
-/// that a repair removed or whose end it moved.
+/// Nodes that a listed change may move far. An overlap required it, the node was split as it has many vessels, or a repair
+/// removed its vessel or moved the vessel's end.
 fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));

@@ -222,8 +222,8 @@ fn kept(strategy: Strategy, fault: Fault) -> String {
     }
 }
 
-/// Difference between a mesh and the given network, as a share of the usual limits: the larger one of the volume error and of
-/// the displacement of the axis.
+/// Difference between a mesh and the given network, as a share of the usual limits. The larger one counts of the volume error
+/// and the displacement of the axis.
 fn difference(Candidate { stored, networks, .. }: &Candidate) -> f64 {
     let meshed: &Arc<_> = &stored.network;
     let axis = Displacements::of(&networks.given, meshed, &Tubes::of(meshed)).spread.p99;

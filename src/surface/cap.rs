@@ -119,7 +119,7 @@ impl Closing<'_> {
 ///
 /// # Errors
 /// The surface is not closed, or a tip is missing, joined to another vessel, or does not leave one loop. `Stopped` if the
-/// watch says so.
+/// watch stops it.
 pub fn cap_terminals(
     wall: &SizedWall,
     field: &mut Field,

@@ -54,7 +54,7 @@ pub struct SizedWall {
 /// Returns the wall like [`vessel_surface`], with its target edge lengths, which `finer` shortens locally.
 ///
 /// # Errors
-/// See [`vessel_surface`]; `Stopped` if the watch says so.
+/// See [`vessel_surface`]; `Stopped` if the watch stops it.
 pub fn vessel_wall(
     tubes: &[Tube],
     params: &SurfaceParams,

@@ -139,7 +139,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// Relaxes a surface that is good except for an inner seam: flips use the angle criterion only.
     ///
     /// # Errors
-    /// [`Stop`] if the watch says so.
+    /// [`Stop`] if the watch stops it.
     pub(crate) fn mend(&mut self, rounds: usize) -> Result<(), Stop> {
         self.rounds(rounds, Criterion::Angle);
         self.flip(Criterion::Angle);
@@ -151,7 +151,7 @@ impl<'a, L: Level> Relaxation<'a, L> {
     /// surfaces.
     ///
     /// # Errors
-    /// [`Stop`] if the watch says so.
+    /// [`Stop`] if the watch stops it.
     pub(crate) fn run(&mut self, rounds: usize) -> Result<(), Stop> {
         self.rounds(rounds, Criterion::Valence);
         self.open_crotches(Self::finish);

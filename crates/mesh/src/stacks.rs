@@ -2,7 +2,7 @@
 //!
 //! A layered mesh lists the tetrahedra of each wall triangle's stack one after the other, from the wall inwards. Three
 //! of them are a prism, and two are a pyramid, where one vertex has no offset. Readers and writers keep the order of
-//! tetrahedra and of their vertices. So the cells of layers are found again in any file, without a label: a stack begins
+//! tetrahedra and of their vertices. So the cells of layers are found again in any file, without a label. A stack begins
 //! with a tetrahedron at a wall triangle, and each layer begins where the previous one ends.
 //!
 //! ```

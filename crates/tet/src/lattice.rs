@@ -74,7 +74,7 @@ fn pack([i, j, k]: [i64; 3]) -> u64 {
 /// that grazes an edge may give wrong points, which carving drops.
 ///
 /// # Errors
-/// [`Stop`] if the watch says so.
+/// [`Stop`] if the watch stops it.
 pub fn lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
     let sites = sites(surface, cell, |_| Some(clearance), watch)?;
     Ok(sites.map_or_else(Vec::new, |(lattice, columns)| columns.places(&lattice)))

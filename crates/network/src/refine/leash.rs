@@ -18,9 +18,6 @@ const REACH: f64 = 4.0;
 const RAMP: f64 = 0.6;
 /// Vessels closer than this, in sums of their radii, almost touch.
 const CLOSE: f64 = 1.02;
-/// Distance in sums of radii below which walls of vessels that do not overlap may still intersect: the corners of a coarse
-/// wall lie up to 6 % of the radius outside its tube (ρ = 3).
-const NEAR: f64 = 1.03;
 /// Maximum limit for an overlap, in sums of its radii: a vessel that crosses another axis has to move by one.
 const DEMANDED: f64 = 2.0;
 
@@ -82,7 +79,7 @@ impl Leashes {
 
     /// Vessels whose walls may intersect, though their tubes do not overlap.
     pub(super) fn near(frame: &Frame) -> Overlaps {
-        widened(frame, NEAR)
+        widened(frame, CLOSE)
     }
 
     /// Overlaps, plus released vessels that almost touch: walls deviate slightly from the radius.

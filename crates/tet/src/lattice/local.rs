@@ -25,7 +25,7 @@ const ASKED_EVERY: usize = 4096;
 /// The result is deterministic.
 ///
 /// # Errors
-/// [`Stop`] if the watch says so.
+/// [`Stop`] if the watch stops it.
 pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
     let sizes = edges_at_vertices(surface);
     let Some(bands) = Bands::of(&sizes) else {

@@ -34,6 +34,6 @@ pub(super) fn turbulence() -> String {
 
 pub(super) fn decompose() -> String {
     head::text("dictionary", "system/decomposeParDict")
-        + "numberOfSubdomains 4;\n// Asks for no library; scotch is better where it is there.\nmethod          hierarchical;\n\
+        + "numberOfSubdomains 4;\n// Asks for no library; scotch is better where it exists.\nmethod          hierarchical;\n\
            coeffs          { n (2 2 1); }\n"
 }

@@ -32,8 +32,8 @@ pub(super) struct Figures {
     /// Sum of these angles over the faces.
     pub(super) angles: f64,
     pub(super) faces: u64,
-    /// Maximum distance of the centre of a face from the line between the centres of its cells, as a fraction of the
-    /// face's extent in this direction.
+    /// Maximum distance of a face's centre from the line between its cells' centres, as a fraction of the face's extent in
+    /// this direction.
     pub(super) skewness: f64,
     /// Maximum ratio of the volumes of two neighbouring cells.
     pub(super) growth: f64,

@@ -77,8 +77,8 @@ fn is_ours(name: &str) -> bool {
 /// case is not expected to converge.
 ///
 /// Tetrahedra are read twice, points twice, the boundary three times. A mesh with layers is read once more. Memory holds
-/// the faces between parts of the mesh, about 50 bytes each, and the position of every patch; with layers, also a byte
-/// per face.
+/// the faces between parts of the mesh, about 50 bytes each, and the position of every patch. With layers it also holds a
+/// byte per face.
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.

@@ -93,7 +93,7 @@ impl<'a> Outlets<'a> {
         if self.list.is_empty() { 0.0 } else { sum / self.list.len() as f64 }
     }
 
-    /// Entry of the coupled outlets before `boundaryField`, empty if there are none.
+    /// Entry of the coupled outlets before `boundaryField`, empty without such outlets.
     pub(super) fn definition(&self, viscosity: f64, relaxation: f64) -> String {
         if !self.are_coupled() {
             return String::new();
