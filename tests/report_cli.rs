@@ -72,7 +72,7 @@ fn a_mesh_and_its_check() {
             "</i>outlet</span>",
         ],
     );
-    assert!(html.matches("data:image/png;base64,").count() == 5 && !html.contains("a<b>"));
+    assert!(html.matches("data:image/png;base64,").count() == 3 && !html.contains("a<b>"));
     assert_code(&run("check", &[&tree], &["--report", checked.to_str().expect("a path")]), FINE);
     let html = page(&checked);
     holds(&html, &["class=\"verdict good\">valid<", "<h2>Patches</h2>", "Dihedral angles", "inlet"]);

@@ -6,7 +6,7 @@ use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockInput, BlockParams};
 use crate::partition::{Cluster, Cut, Layout};
-use crate::surface::estimated_cells;
+use crate::surface::{MAX_CELLS, estimated_cells};
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::Skeleton;
 
@@ -194,6 +194,10 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let cost = of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer);
     let voxel = 2.0 * thin / plan.rho;
     let cells = estimated_cells(&cluster.tubes, voxel);
+    // An attempt with more cells fails before it makes a grid.
+    if cells > MAX_CELLS as f64 {
+        return cost;
+    }
     let bytes = cost.bytes.max((BYTES_PER_BLOCK + BYTES_PER_CELL * cells) as u64);
     Cost { operations: cost.operations + PER_CELL * cells, bytes, ..cost }
 }

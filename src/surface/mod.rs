@@ -18,6 +18,7 @@ mod tests;
 
 pub use cap::{CapError, CapFailure, CappedSurface, Closing, cap_terminals};
 pub use field::Field;
+pub(crate) use params::MAX_CELLS;
 pub use params::{SurfaceError, SurfaceParams};
 pub use shared_disc::SharedDisc;
 pub use sizes::Finer;

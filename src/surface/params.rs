@@ -28,6 +28,9 @@ pub struct SurfaceParams {
 /// than contouring at the right size.
 const COARSENED: f64 = 0.93;
 
+/// Maximum number of cells that a wall may cross. Contours of that size take about 6 GB.
+pub(crate) const MAX_CELLS: usize = 20_000_000;
+
 impl SurfaceParams {
     /// Default parameters for a cell size, with constant edge length.
     pub fn with_voxel(voxel: f64) -> Self {
@@ -39,7 +42,7 @@ impl SurfaceParams {
             thin: 1.0,
             follow: 0.0,
             rounds: 2,
-            max_cells: 20_000_000,
+            max_cells: MAX_CELLS,
         }
     }
 
