@@ -444,13 +444,11 @@ impl Args {
     /// Writes the refined network, if requested: the network as given if that is meshed.
     fn write_refined(&self, networks: &Networks) -> Result<(), Failure> {
         let Some(path) = &self.refined else { return Ok(()) };
-        match &networks.refined {
-            Some(refined) => super::refine::write(path, &refined.skeleton, &refined.origin),
-            None => {
-                let at: Vec<Point3> = networks.prepared.nodes.iter().map(|node| node.position).collect();
-                super::refine::write(path, &networks.prepared, &at)
-            }
+        if let Some(refined) = &networks.refined {
+            return super::refine::write(path, &refined.skeleton, &refined.origin);
         }
+        let at: Vec<Point3> = networks.prepared.nodes.iter().map(|node| node.position).collect();
+        super::refine::write(path, &networks.prepared, &at)
     }
 
     /// Writes the refined network that was meshed, and its report.

@@ -250,6 +250,9 @@ pub fn cluster(
     Tried { result: Ok(block), failures, way, spent: budget.spent() }
 }
 
+/// Moves of tips that failed, and the tips that they left uncapped.
+type TriedMoves = (Vec<(u32, f64)>, Vec<u32>);
+
 /// Makes a cluster with its tips moved until all are capped: the way in which it came out, and what failed in it. `all`: every
 /// tip that could not be capped at some time, by the same; else a tip stays where it could be capped. `tried`: moves that
 /// failed, and the tips that they left uncapped. They are not repeated.
@@ -258,7 +261,7 @@ fn with_tips_moved(
     uncapped: &[u32],
     all: bool,
     is_over: impl Fn() -> bool,
-    tried: &mut Vec<(Vec<(u32, f64)>, Vec<u32>)>,
+    tried: &mut Vec<TriedMoves>,
     made: impl Fn(&Cluster) -> Tried,
 ) -> Option<(Finished, String, Vec<BlockError>)> {
     let mut open = uncapped.to_vec();

@@ -27,7 +27,7 @@ pub enum OutletKind {
 }
 
 impl OutletKind {
-    /// Usual proximal part of the resistance of an RCR model, as in the examples of `SimVascular`.
+    /// Default proximal part of the resistance of an RCR model, a usual value for systemic arteries.
     pub const PROXIMAL_FRACTION: f64 = 0.09;
 
     fn name(&self) -> &'static str {

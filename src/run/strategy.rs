@@ -120,7 +120,7 @@ pub(super) struct Meshing<'a, 'b> {
 /// walls intersect that belong to vessels which do not overlap, finer edges are tried.
 pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let best = if meshing.refine.is_some() && networks.refine.is_none() {
-        as_given_or_refined(networks, meshing)?
+        as_given_or_refined(&networks, meshing)?
     } else {
         planned(networks, true, meshing).map_err(Failure::into_error)?
     };
@@ -128,7 +128,7 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
 }
 
 /// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
-fn as_given_or_refined<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
+fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let as_given = match meshing.attempt(Strategy::AsGiven, networks.clone()) {
         Ok(candidate) if meshing.attempts[candidate.attempt].fault.is_none() => {
             meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
@@ -137,7 +137,7 @@ fn as_given_or_refined<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) ->
         Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
         other => other.ok(),
     };
-    let networks = (meshing.refined)(&networks)?;
+    let networks = (meshing.refined)(networks)?;
     match (as_given, planned(networks, false, meshing)) {
         (Some(as_given), Err(Failure { error: RunError::BlocksFailed(_), .. })) => Ok(as_given),
         (Some(as_given), Ok(planned)) if meshing.is_closer(&as_given, &planned) => {

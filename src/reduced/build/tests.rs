@@ -39,14 +39,16 @@ fn written(path: &Path, model: &ReducedModel) -> Value {
 
 /// Steady solution of the solver's equations: flow and pressure at both ends of each vessel.
 ///
-/// Vessels: p_in − p_out = R q_in, and q_in = q_out. Junctions: pressures are equal, and flows balance.
+/// Vessels: `p_in − p_out = R q_in`, and `q_in = q_out`. Junctions: pressures are equal, and flows balance.
 fn solution(model: &Value) -> Vec<[f64; 4]> {
     let vessels = model["vessels"].as_array().unwrap();
     let unknowns = 4 * vessels.len();
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     let mut equation = |terms: &[(usize, f64)], value: f64| {
         let mut row = vec![0.0; unknowns];
-        terms.iter().for_each(|&(at, factor)| row[at] += factor);
+        for &(at, factor) in terms {
+            row[at] += factor;
+        }
         // Rows are scaled: pressures exceed flow rates by ten orders of magnitude.
         let most = row.iter().fold(0.0, |most: f64, term: &f64| most.max(term.abs()));
         rows.push(row.iter().map(|term| term / most).collect::<Vec<f64>>());

@@ -30,7 +30,7 @@ pub enum NetworkFormat {
     Sv1d,
     /// VTK unstructured grid with lines: `.vtu`.
     Vtu,
-    /// Vertices and strands of VessMorphoVis: `.vmv`.
+    /// Vertices and strands of `VessMorphoVis`: `.vmv`.
     Vmv,
     /// TetGen's points and edges in two files of one name: `.edge`, with `.node` beside it.
     TetgenEdges,

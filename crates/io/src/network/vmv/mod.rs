@@ -1,4 +1,4 @@
-//! Format of VessMorphoVis: numbered vertices, and strands of vertices.
+//! Format of `VessMorphoVis`: numbered vertices, and strands of vertices.
 
 mod read;
 

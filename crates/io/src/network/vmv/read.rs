@@ -54,12 +54,11 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     }
 }
 
+/// Reader of a row after its first word.
+type ReadRow<'a, 'b> = &'b mut dyn FnMut(&mut Words<'a>, &'a [u8]) -> Result<(), VmvError>;
+
 /// Reads the rows of a list; the reader of a row gets its first word.
-fn list<'a>(
-    words: &mut Words<'a>,
-    end: &'static str,
-    row: &mut dyn FnMut(&mut Words<'a>, &'a [u8]) -> Result<(), VmvError>,
-) -> Result<(), VmvError> {
+fn list<'a>(words: &mut Words<'a>, end: &'static str, row: ReadRow<'a, '_>) -> Result<(), VmvError> {
     let line = words.line();
     loop {
         match words.word() {

@@ -5,7 +5,7 @@
 //!
 //! The pressure of an outlet should be P + R Q, with the flow rate Q of the previous iteration. Such a condition
 //! diverges if R exceeds the resistance of the cells at the outlet. Therefore part of the pressure p of the face follows
-//! the pressure of its cell: p = f V + (1 - f) p_cell. The value V is integrated, V += P + R Q - mean(p), until the mean
+//! the pressure of its cell: `p = f V + (1 - f) p_cell`. The value V is integrated, V += P + R Q - mean(p), until the mean
 //! pressure of the outlet is P + R Q. Within the outlet the pressure varies as in the cells.
 //! A stored variable keeps its value of the previous time step until a step ends. Within a step V is therefore
 //! corrected from the same value several times, and a full correction would alternate.

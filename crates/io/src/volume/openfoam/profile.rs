@@ -107,7 +107,9 @@ impl<'a> Velocities<'a> {
         let mut steady: Vec<f64> = shares.iter().map(|&share| poiseuille(share)).collect();
         let rate: f64 = steady.iter().zip(&areas).map(|(speed, area)| speed * area).sum();
         if rate > 0.0 {
-            steady.iter_mut().for_each(|speed| *speed /= rate);
+            for speed in &mut steady {
+                *speed /= rate;
+            }
         }
         let nu = flow.viscosity / flow.density;
         let of_harmonic = |harmonic: Harmonic| {
@@ -115,7 +117,9 @@ impl<'a> Velocities<'a> {
             let mut speeds: Vec<Complex<f64>> = shares.iter().map(|&share| womersley(alpha, share)).collect();
             let rate: Complex<f64> = speeds.iter().zip(&areas).map(|(speed, area)| speed * area).sum();
             if rate.norm() > 0.0 {
-                speeds.iter_mut().for_each(|speed| *speed /= rate);
+                for speed in &mut speeds {
+                    *speed /= rate;
+                }
             }
             (harmonic, speeds)
         };

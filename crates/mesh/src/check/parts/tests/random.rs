@@ -56,7 +56,7 @@ fn harm(cut: &mut MemoryParts, harm: Damage, part: usize, at: usize) -> bool {
     }
     match harm {
         Damage::MovePoint(by) => {
-            piece.mesh.points[piece.mesh.tets[tet][0] as usize] += Vec3::new(by, 0.3 * by, 0.1 * by)
+            piece.mesh.points[piece.mesh.tets[tet][0] as usize] += Vec3::new(by, 0.3 * by, 0.1 * by);
         }
         Damage::FlipTet => piece.mesh.tets[tet].swap(0, 1),
         Damage::DropTet => {
