@@ -93,7 +93,7 @@ def test_a_bound_that_is_not_met_has_its_mesh(cube: Cube) -> None:
         anastomesh.tetrahedralize(*cube, max_volume=1e-5, tetgen=None, refine=True, size=10)
     error = caught.value
     assert [(condition.name, condition.count > 0) for condition in error.failed] == [("max_volume", True)]
-    assert str(error) == str(error.failed[0])
+    assert str(error).startswith(str(error.failed[0]))
     assert error.exit_code == 1
     assert anastomesh.check(error.result)
     assert error.report is not None and "report" in error.report
