@@ -3,8 +3,8 @@
 //! ```
 //! use anastomesh_io::flow::{OutletModel, Waveform};
 //!
-//! let pulse = Waveform::new(vec![0.0, 0.3, 0.8], vec![1.0, 3.0, 1.0])?;
-//! assert_eq!((pulse.period(), pulse.mean(), pulse.at(0.95)), (0.8, 2.0, 2.0));
+//! let pulse = Waveform::new(vec![0.0, 0.25, 0.75], vec![1.0, 3.0, 1.0])?;
+//! assert_eq!((pulse.period(), pulse.mean(), pulse.at(0.875)), (0.75, 2.0, 2.0));
 //! let outlet = OutletModel::Resistance { resistance: 5.0, distal_pressure: 0.0 };
 //! assert_eq!(outlet.mean_pressure(pulse.mean()), 10.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
