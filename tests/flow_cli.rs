@@ -3,8 +3,9 @@
 mod common;
 
 use common::oracle;
-use common::program::{BAD_INPUT, FINE, USAGE, assert_code, assert_says, entries, folder, json, mesh, run, stderr};
-use std::collections::BTreeMap;
+use common::program::{
+    BAD_INPUT, FINE, USAGE, assert_code, assert_says, entries, folder, json, mesh, number, run, stderr, table,
+};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -26,18 +27,6 @@ fn write(folder: &Path, name: &str, text: &str) -> std::path::PathBuf {
 /// Runs `flow` on a network.
 fn flow(network: &Path, out: &Path, options: &[&str]) -> std::process::Output {
     run("flow", &[network], &[&["-o", out.to_str().expect("a path")], options].concat())
-}
-
-/// Rows of a table, as maps from columns.
-fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let text = fs::read_to_string(path).expect("a table");
-    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
-    let columns: Vec<String> = lines.next().expect("a head").collect();
-    lines.map(|row| columns.iter().cloned().zip(row).collect()).collect()
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
 #[test]

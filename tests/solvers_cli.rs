@@ -4,8 +4,9 @@ mod common;
 
 use anastomesh::io::read_mesh;
 use common::oracle;
-use common::program::{BAD_INPUT, FINE, USAGE, assert_code, assert_says, entries, folder, mesh, run, stdout};
-use std::collections::BTreeMap;
+use common::program::{
+    BAD_INPUT, FINE, USAGE, assert_code, assert_says, entries, folder, mesh, number, run, stdout, table,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -19,18 +20,6 @@ fn meshed(folder: &Path, name: &str, options: &[&str]) -> PathBuf {
     fs::write(&network, FORKS).expect("a file");
     assert_code(&mesh(&network, &out, options), FINE);
     out
-}
-
-/// Rows of a table, as maps from columns.
-fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let text = fs::read_to_string(path).expect("a table");
-    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
-    let columns: Vec<String> = lines.next().expect("a head").collect();
-    lines.map(|row| columns.iter().cloned().zip(row).collect()).collect()
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Runs the program like a user, and reads its output.
 
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -31,6 +32,19 @@ pub fn mesh(network: &Path, out: &Path, options: &[&str]) -> Output {
 /// Tetrahedralizes a surface.
 pub fn fill(surface: &Path, out: &Path, options: &[&str]) -> Output {
     run("tetrahedralize", &[surface, Path::new("--output"), out], options)
+}
+
+/// Rows of a table, as maps from columns.
+pub fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let text = fs::read_to_string(path).expect("a table");
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
+    let columns: Vec<String> = lines.next().expect("a head").collect();
+    lines.map(|row| columns.iter().cloned().zip(row).collect()).collect()
+}
+
+/// Number in a row of a table.
+pub fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
 /// A good vessel, and a bifurcation with a hair too thin to store its wall. As VTP, so that others keep their radius.
