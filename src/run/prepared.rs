@@ -54,8 +54,9 @@ impl PreparedRun {
     /// # Errors
     /// If a parameter is out of range, the run is cancelled, or the work directory cannot be used.
     pub fn refined(mut self, store: Option<&Store>, progress: &dyn Progress) -> Result<Self, MeshingError> {
-        let is_due = self.networks.refine.is_none() && !self.networks.may_be_sound_as_given();
-        if let Some(params) = self.refinement().filter(|_| is_due || self.plan.smooths_joints()) {
+        // The search for overlaps comes last, as it takes a second in large networks.
+        let Some(params) = self.refinement().filter(|_| self.networks.refine.is_none()) else { return Ok(self) };
+        if self.plan.smooths_joints() || !self.networks.may_be_sound_as_given() {
             self.networks = refined(&self.networks, &params, store, progress)?;
         }
         Ok(self)
