@@ -3,6 +3,7 @@
 mod common;
 
 use anastomesh::io::read_mesh;
+use anastomesh::mesh::stacks::MixedMesh;
 use common::program::*;
 use common::{fixture, shared};
 use serde_json::Value;
@@ -52,8 +53,18 @@ fn layers_go_all_along_the_wall_and_caps_stay_flat() {
     assert!(tets > 9 * wall, "{tets} {wall}");
     assert_code(&run("check", &[&out], &[]), FINE);
     sizes(&["--layers", "2", "--stretch", "4", "--core", "1.5"]);
+    // Prisms as whole cells: three per wall triangle, and the mesh stays valid for a reader that splits them.
+    assert_code(&mesh(&fixture("tree_30.vtp"), &out, &["--layers", "3", "--prisms"]), FINE);
+    let read = read_mesh(&out).expect("a mesh").volume;
+    assert_eq!(read.mesh.tets.len() as u64, tets);
+    let mixed = MixedMesh::of(&read);
+    assert_eq!(mixed.cells.iter().filter(|cell| cell.layer > 0).count() as u64, 3 * wall);
+    assert_code(&run("check", &[&out], &[]), FINE);
     for (options, words) in [
         (&["--layers", "3", "--layer-thickness", "1"][..], &["0.001 to 0.8"][..]),
+        (&["--prisms"], &["--prisms needs --layers"]),
+        (&["--layers", "3", "--prisms", "--data", "radius"], &["--data"]),
+        (&["--layers", "3", "--prisms", "--format", "medit"], &["--prisms", ".vtu or .msh"]),
         (&["--layers", "3", "--joint", "woven"], &["joint style disc"]),
         (&["--core", "0"], &["core", "0.5"]),
     ] {

@@ -171,6 +171,7 @@ impl Args {
                 .format(self.format.format)
                 .memory((self.memory / 4) as usize)
                 .grid(self.grid.options())
+                .prisms(self.format.prisms)
                 .remark(&remark as &dyn Fn(&str));
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();

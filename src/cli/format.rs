@@ -11,6 +11,9 @@ pub struct FormatArgs {
     /// simvascular, npy or tetgen
     #[arg(long, value_name = "FORMAT", value_parser = named)]
     pub format: Option<MeshFormat>,
+    /// Write the prisms and pyramids of layers as whole cells, with their layer as cell data `layer` (VTU and MSH 4.1)
+    #[arg(long)]
+    pub prisms: bool,
 }
 
 fn named(name: &str) -> Result<MeshFormat, String> {
@@ -21,9 +24,13 @@ fn named(name: &str) -> Result<MeshFormat, String> {
 impl FormatArgs {
     /// Returns the format of an output file.
     pub fn of(self, path: &Path) -> Result<MeshFormat, Failure> {
-        match self.format {
-            Some(format) => Ok(format),
-            None => MeshFormat::of(path).map_err(|e| Failure::input(e.to_string())),
+        let format = match self.format {
+            Some(format) => format,
+            None => MeshFormat::of(path).map_err(|e| Failure::input(e.to_string()))?,
+        };
+        if self.prisms && !matches!(format, MeshFormat::Vtu | MeshFormat::Msh) {
+            return Err(Failure::usage("--prisms is not supported by this format: use .vtu or .msh"));
         }
+        Ok(format)
     }
 }

@@ -170,6 +170,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !args.data.is_empty() && !format.holds_values() {
         return Err(Failure::usage("--data is not supported by this format: use .vtu, .pvtu, .msh, .msh2 or .npyd"));
     }
+    if args.format.prisms && (plan.layers.is_none() || !args.data.is_empty()) {
+        return Err(Failure::usage("--prisms needs --layers, and does not combine with --data"));
+    }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     args.report.ensure_writable()?;
@@ -283,6 +286,7 @@ impl Args {
             .format(self.format.format)
             .memory((self.blocks.memory / 4) as usize)
             .grid(self.grid.options())
+            .prisms(self.format.prisms)
             .values(data.as_ref().map(|data| data as &dyn Beside))
             .remark(&remark as &dyn Fn(&str));
         // A cancelled pass over the blocks fails with an error.

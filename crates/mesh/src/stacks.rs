@@ -15,10 +15,16 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod mixed;
+mod split;
+
 use crate::source::{FacePiece, MeshSource};
 use crate::{WALL, face_key};
 use rustc_hash::FxHashSet;
 use std::io;
+
+pub use mixed::{MixedCell, MixedFace, MixedMesh};
+pub use split::Polyhedra;
 
 /// Minimum fraction of the wall triangles in the first parts that begin a stack. A mesh with layers has nearly all, a
 /// mesh without layers has none: its tetrahedra would have to be in this order by chance.

@@ -16,6 +16,8 @@ pub struct WriteOptions<'a> {
     pub grid: GridOptions,
     /// Additional values for VTK and Gmsh files.
     pub values: Option<&'a dyn Beside>,
+    /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU and MSH 4.1 only, without values.
+    pub prisms: bool,
     /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
     pub remark: Option<&'a dyn Fn(&str)>,
 }
@@ -25,6 +27,7 @@ anastomesh_mesh::setters!(WriteOptions<'a> {
     memory: impl Into<Option<usize>>,
     grid: GridOptions,
     values: impl Into<Option<&'a dyn Beside>>,
+    prisms: bool,
     remark: impl Into<Option<&'a dyn Fn(&str)>>,
 });
 

@@ -1,7 +1,7 @@
 //! Tests of round trips in every format, of independence from the parts of the source, and of full disks.
 
 use super::content::MeshNotes;
-use super::fixtures::labelled_tube;
+use super::fixtures::{labelled_tube, slab};
 use super::format::MeshFormat;
 use super::in_pieces::InPieces;
 use super::options::WriteOptions;
@@ -9,12 +9,16 @@ use super::read::read_mesh;
 use super::vtu::Recounted;
 use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
 use crate::file::FileError;
+use anastomesh_mesh::adjacency::boundary_faces;
+use anastomesh_mesh::check::{check_tets, check_volume};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::StopsAfter;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
+use anastomesh_mesh::stacks::MixedMesh;
 use anastomesh_mesh::{Patch, VolumeMesh};
 use proptest::prelude::*;
 use std::borrow::Cow;
+use std::fs;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 
 const STREAMED: [MeshFormat; 4] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Msh2, MeshFormat::Medit];
@@ -242,4 +246,50 @@ fn a_mesh_whose_writing_is_stopped_leaves_nothing() {
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
         }
     }
+}
+
+#[test]
+fn prisms_are_whole_cells_in_vtu_and_msh_and_split_when_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = WriteOptions::default().prisms(true);
+    for name in ["prisms.vtu", "prisms.msh"] {
+        let path = folder.path().join(name);
+        write_mesh_with(&options, &path, &slab(), &MeshNotes::default(), &()).unwrap();
+        let read = read_mesh(&path).unwrap().volume;
+        assert_eq!(read.mesh.tets.len(), 12, "{name}");
+        assert!(check_volume(&read, None).failed().next().is_none(), "{name}");
+        // The same prisms again, and the sides of the inlet.
+        let mixed = MixedMesh::of(&read);
+        assert!(mixed.cells.iter().all(|cell| cell.vertices().len() == 6), "{name}");
+        assert_eq!(mixed.cells.iter().map(|cell| cell.layer).collect::<Vec<_>>(), [1, 2, 1, 2], "{name}");
+        assert_eq!(mixed, MixedMesh::of(&slab()), "{name}");
+    }
+    let text = fs::read(folder.path().join("prisms.vtu")).unwrap();
+    assert!(String::from_utf8_lossy(&text).contains("NumberOfCells=\"16\""));
+    let error = write_mesh_with(&options, &folder.path().join("a.mesh"), &slab(), &MeshNotes::default(), &());
+    assert!(error.unwrap_err().to_string().contains(".vtu and .msh"));
+}
+
+/// Prisms of another program, with the outer triangle first or last.
+#[test]
+fn prisms_in_any_order_are_split_alike_on_both_sides() {
+    let (mut file, folder) = (slab(), tempfile::tempdir().unwrap());
+    file.mesh.points.reverse();
+    for face in file.mesh.tets.iter_mut().flatten().chain(file.boundary.iter_mut().flatten()) {
+        *face = 11 - *face;
+    }
+    let path = folder.path().join("prisms.msh");
+    write_mesh_with(&WriteOptions::default().prisms(true), &path, &file, &MeshNotes::default(), &()).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    // Each second prism is seen from its other triangle: block of elements of type 6, with tag and six nodes each.
+    let start = bytes.windows(20).position(|w| w[..12] == [3, 0, 0, 0, 1, 0, 0, 0, 6, 0, 0, 0]).unwrap() + 20;
+    for prism in [1, 3] {
+        let nodes = &mut bytes[start + 56 * prism + 8..start + 56 * prism + 56];
+        let turned = [3, 5, 4, 0, 2, 1].map(|i: usize| nodes[8 * i..8 * i + 8].to_vec()).concat();
+        nodes.copy_from_slice(&turned);
+    }
+    fs::write(&path, bytes).unwrap();
+    let read = read_mesh(&path).unwrap().volume;
+    assert!(check_tets(&read.mesh, None).failed().next().is_none());
+    assert_eq!(boundary_faces(&read.mesh).len(), slab().boundary.len());
 }

@@ -11,6 +11,8 @@ use crate::tetgen::MeshFamily;
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_mesh::stacks::MixedMesh;
+use std::borrow::Cow;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
@@ -76,6 +78,11 @@ pub fn write_mesh_with(
     let grid = options.grid;
     let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
     let write = || match format {
+        MeshFormat::Vtu | MeshFormat::Msh if options.prisms => write_prisms(path, format, mesh, notes, grid, progress),
+        _ if options.prisms => Err(io::Error::new(
+            io::ErrorKind::Unsupported,
+            "prisms are written to .vtu and .msh (version 4.1); OpenFOAM cases have them in any case",
+        )),
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
             let memory = options.memory.unwrap_or(usual.memory);
@@ -103,6 +110,26 @@ pub fn write_mesh_with(
         }
         _ => write().map_err(FileError::write(path)),
     }
+}
+
+/// Writes the prisms of layers as whole cells. The mesh is held in memory.
+fn write_prisms(
+    path: &Path,
+    format: MeshFormat,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    grid: GridOptions,
+    progress: &dyn Progress,
+) -> io::Result<()> {
+    let volume = mesh.whole().map_or_else(|| gather(mesh).map(Cow::Owned), |volume| Ok(Cow::Borrowed(volume)))?;
+    let mixed = MixedMesh::of(&volume);
+    write_whole(path, |out| {
+        let out = &mut Asked { out, progress };
+        match format {
+            MeshFormat::Vtu => vtu::write_mixed(out, &volume, &mixed, notes, grid),
+            _ => msh::write_mixed(out, &volume, &mixed, notes),
+        }
+    })
 }
 
 /// Boundary file beside a tetrahedra-only grid, complete except for its move to the target.

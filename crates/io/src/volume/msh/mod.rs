@@ -6,6 +6,7 @@
 
 mod cursor;
 mod error;
+mod mixed;
 mod names;
 mod read;
 mod surfaces;
@@ -17,6 +18,7 @@ mod write;
 mod write_2;
 
 pub use error::MshFault;
+pub(super) use mixed::write_mixed;
 pub(super) use read::read;
 pub(super) use write::write;
 pub(super) use write_2::write as write_2;

@@ -7,7 +7,10 @@ use anastomesh_mesh::{Cap, Patch};
 
 /// Gmsh element types.
 pub(super) const MSH_TRIANGLE: i32 = 2;
+pub(super) const MSH_QUAD: i32 = 3;
 pub(super) const MSH_TETRA: i32 = 4;
+pub(super) const MSH_PRISM: i32 = 6;
+pub(super) const MSH_PYRAMID: i32 = 7;
 
 /// Name of the volume's physical group.
 pub(super) const VOLUME_NAME: &str = "lumen";

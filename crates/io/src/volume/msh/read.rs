@@ -2,15 +2,16 @@
 
 use super::cursor::{MshCursor, Version};
 use super::error::MshFault;
-use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION};
+use super::names::{Extra, MSH_PRISM, MSH_PYRAMID, MSH_QUAD, MSH_TETRA, MSH_TRIANGLE, SECTION};
 use crate::patches::{distinct, usual_name};
 use crate::volume::content::MeshFile;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::stacks::Polyhedra;
 use anastomesh_mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
-/// Reads a mesh from the bytes of a `.msh` file, version 4.1 or 2.2 as text. Tetrahedra and triangles are read; points
-/// and lines are skipped. The label of a triangle is the first physical group of its surface.
+/// Reads a mesh from the bytes of a `.msh` file, version 4.1 or 2.2 as text. Prisms, pyramids and quadrilaterals are
+/// split into tetrahedra and triangles; points and lines are skipped. The label of a triangle is the first physical group of its surface.
 ///
 /// # Errors
 /// The file is invalid or incomplete, or has other elements.
@@ -56,6 +57,10 @@ struct MshSections {
     nodes: Vec<(u64, Point3)>,
     tets: Vec<(u64, [u64; 4], i32)>,
     triangles: Vec<(u64, [u64; 3], i32)>,
+    /// Cells to split, by their tags. They have placeholders with their tags among tetrahedra and triangles.
+    prisms: Vec<(u64, [u64; 6])>,
+    pyramids: Vec<(u64, [u64; 5])>,
+    quads: Vec<(u64, [u64; 4])>,
     extra: Extra,
 }
 
@@ -121,7 +126,7 @@ impl MshSections {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
-            let groups = if kind == MSH_TETRA { &self.group_of_volume } else { &self.group_of_surface };
+            let groups = if matches!(kind, MSH_TETRA | MSH_PRISM | MSH_PYRAMID) { &self.group_of_volume } else { &self.group_of_surface };
             let group = groups.get(&entity).copied().unwrap_or(0);
             for _ in 0..cursor.size()? {
                 let tag = cursor.size()?;
@@ -149,7 +154,7 @@ impl MshSections {
                 let value = cursor.int()?;
                 group = if i == 0 { value } else { group };
             }
-            if kind == MSH_TRIANGLE {
+            if matches!(kind, MSH_TRIANGLE | MSH_QUAD) {
                 // What a reader of version 4.1 knows from the entities.
                 self.group_of_surface.insert(group, group);
             }
@@ -163,6 +168,18 @@ impl MshSections {
         match kind {
             MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
             MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+            MSH_PRISM => {
+                self.prisms.push((tag, cursor.sizes()?));
+                self.tets.extend([(tag, [0; 4], group); 3]);
+            }
+            MSH_PYRAMID => {
+                self.pyramids.push((tag, cursor.sizes()?));
+                self.tets.extend([(tag, [0; 4], group); 2]);
+            }
+            MSH_QUAD => {
+                self.quads.push((tag, cursor.sizes()?));
+                self.triangles.extend([(tag, [0; 3], group); 2]);
+            }
             // Lines and points bound no volume.
             1 => drop(cursor.sizes::<2>()?),
             15 => drop(cursor.size()?),
@@ -188,9 +205,12 @@ impl MshSections {
         }
         self.tets.sort_by_key(|&(tag, ..)| tag);
         self.triangles.sort_by_key(|&(tag, ..)| tag);
+        let polyhedra = self.polyhedra();
         let volume = &mut file.volume;
         volume.mesh.points = self.nodes.iter().map(|&(_, p)| p).collect();
         volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+        let mut faces: Vec<[u32; 3]> = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+        polyhedra.split(&mut volume.mesh.tets, &mut faces);
         // A single group names the whole mesh; several groups are regions.
         let regions = self.tets.iter().any(|tet| Some(tet.2) != self.tets.first().map(|first| first.2));
         volume.tet_block = self.tets.iter().map(|tet| if regions { tet.2 } else { 0 }).collect();
@@ -199,12 +219,23 @@ impl MshSections {
         // Triangles without a group are not a labelled boundary.
         if self.triangles.iter().any(|&(.., group)| group != 0) {
             file.labelled = true;
-            volume.boundary = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
+            volume.boundary = faces;
             volume.boundary_patch = self.triangles.iter().map(|&(.., group)| group).collect();
             volume.boundary_block = vec![0; self.triangles.len()];
             volume.patches = self.patches(&caps);
         }
         Ok(file)
+    }
+
+    /// Cells to split, at the places of their tags in the sorted lists.
+    fn polyhedra(&self) -> Polyhedra {
+        let in_tets = |tag: u64| self.tets.partition_point(|tet| tet.0 < tag);
+        let in_triangles = |tag: u64| self.triangles.partition_point(|triangle| triangle.0 < tag);
+        Polyhedra {
+            prisms: self.prisms.iter().map(|&(tag, v)| (in_tets(tag), v.map(|v| self.index(v)))).collect(),
+            pyramids: self.pyramids.iter().map(|&(tag, v)| (in_tets(tag), v.map(|v| self.index(v)))).collect(),
+            quads: self.quads.iter().map(|&(tag, v)| (in_triangles(tag), v.map(|v| self.index(v)))).collect(),
+        }
     }
 
     /// Index of the node with a tag; out of range if there is none.

@@ -13,17 +13,17 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Volume entity with a part of the tetrahedra.
-struct Volume {
+pub(super) struct Volume {
     /// Physical group and its name; `None` for regions with an invalid tag.
     group: Option<(i32, String)>,
     /// Number of tetrahedra.
     tets: usize,
     /// Region of the tetrahedra; `None` for all.
-    region: Option<i32>,
+    pub region: Option<i32>,
 }
 
 /// One volume in total, or one per region.
-fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
+pub(super) fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
     if notes.regions {
         let mut sizes: BTreeMap<i32, usize> = BTreeMap::new();
         mesh.each_tets(|piece| {
@@ -62,20 +62,36 @@ pub(in crate::volume) fn write(
 ) -> io::Result<()> {
     let surfaces = Surfaces::of(mesh)?;
     let volumes = volumes_of(mesh, notes, &surfaces)?;
-    out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
-    ints(out, &[1])?;
-    out.write_all(b"\n$EndMeshFormat\n")?;
-    write_names(out, mesh.patches(), &volumes)?;
-    write_entities(out, &surfaces, &volumes)?;
     let mut tags = Tags::new(&surfaces, values.is_some());
-    write_nodes(out, mesh, &surfaces, &tags)?;
+    write_before_elements(out, mesh, &surfaces, &volumes, &tags)?;
     write_elements(out, mesh, &surfaces, &volumes, &mut tags)?;
     if let Some(values) = values {
         let regions: Vec<Option<i32>> = volumes.iter().map(|volume| volume.region).collect();
         write_values(out, mesh, values, &surfaces, &regions)?;
     }
+    write_extra(out, mesh.patches(), notes)
+}
+
+/// Writes the sections before the elements.
+pub(super) fn write_before_elements(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    surfaces: &Surfaces,
+    volumes: &[Volume],
+    tags: &Tags,
+) -> io::Result<()> {
+    out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
+    ints(out, &[1])?;
+    out.write_all(b"\n$EndMeshFormat\n")?;
+    write_names(out, mesh.patches(), volumes)?;
+    write_entities(out, surfaces, volumes)?;
+    write_nodes(out, mesh, surfaces, tags)
+}
+
+/// Writes the custom section.
+pub(super) fn write_extra(out: &mut impl Write, patches: &[Patch], notes: &MeshNotes) -> io::Result<()> {
     writeln!(out, "${SECTION}")?;
-    serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
+    serde_json::to_writer(&mut *out, &Extra::of(patches, notes))?;
     write!(out, "\n$End{SECTION}\n")
 }
 
@@ -261,11 +277,11 @@ fn write_element<const N: usize>(
     sizes(out, &corners.map(|v| tags.node(v)))
 }
 
-fn ints(out: &mut impl Write, values: &[i32]) -> io::Result<()> {
+pub(super) fn ints(out: &mut impl Write, values: &[i32]) -> io::Result<()> {
     values.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
 }
 
-fn sizes(out: &mut impl Write, values: &[usize]) -> io::Result<()> {
+pub(super) fn sizes(out: &mut impl Write, values: &[usize]) -> io::Result<()> {
     values.iter().try_for_each(|&v| out.write_all(&(v as u64).to_le_bytes()))
 }
 

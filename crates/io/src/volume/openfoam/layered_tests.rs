@@ -1,49 +1,10 @@
 //! Tests of meshes with layers, flow in time and outlet models.
 
 use super::*;
+use crate::volume::fixtures::slab;
 use crate::flow::{CapFlow, OutletModel, Profile, Transient, Waveform};
 use crate::volume::{WriteOptions, write_mesh, write_mesh_with};
-use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::{Cap, Patch, TET_FACES, TetMesh, VolumeMesh, face_key};
 use std::fs;
-
-/// Two layers below a unit square of two wall triangles: four prisms. One side is an inlet, the bottom an outlet.
-pub(super) fn slab() -> VolumeMesh {
-    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-    let points = (0..3).flat_map(|layer| corners.map(|[x, y]| Point3::new(x, y, -f64::from(layer)))).collect();
-    let prism = |[a, b, c]: [u32; 3], layer: u32, turned: bool| {
-        let (o, i) = (|v: u32| v + 4 * layer, |v: u32| v + 4 * layer + 4);
-        let tets = [[o(b), o(a), o(c), i(c)], [o(a), o(b), i(b), i(c)], [i(a), o(a), i(b), i(c)]];
-        tets.map(|[p, q, r, s]| if turned { [q, p, r, s] } else { [p, q, r, s] })
-    };
-    let tets: Vec<[u32; 4]> = [([0, 1, 2], false), ([1, 2, 3], true)]
-        .into_iter()
-        .flat_map(|(triangle, turned)| [0, 1].map(|layer| prism(triangle, layer, turned)))
-        .flatten()
-        .collect();
-    let sides: Vec<[u32; 3]> = tets.iter().flat_map(|tet| TET_FACES.map(|face| face.map(|i| tet[i]))).collect();
-    let is_outer = |face: &&[u32; 3]| sides.iter().filter(|other| face_key(**other) == face_key(**face)).count() == 1;
-    let boundary: Vec<[u32; 3]> = sides.iter().filter(is_outer).copied().collect();
-    // No prism has two sides on a patch.
-    let all = |face: &[u32; 3], is: fn(u32) -> bool| face.iter().all(|&v| is(v));
-    let patch = |face: &[u32; 3]| match face {
-        face if all(face, |v| v < 4) => 1,
-        face if all(face, |v| v >= 8) => 3,
-        face if all(face, |v| v % 4 >= 2) => 2,
-        face if all(face, |v| v % 4 < 2) => 4,
-        _ => 5,
-    };
-    let cap = Cap { node: 0, center: Point3::new(0.5, 1.0, -1.0), normal: [0.0, 1.0, 0.0].into(), radius: 2.0 };
-    let names =
-        [(1, "wall", None), (2, "inlet", Some(cap)), (3, "outlet_0", None), (4, "opposite", None), (5, "beside", None)];
-    VolumeMesh {
-        boundary_patch: boundary.iter().map(patch).collect(),
-        boundary,
-        mesh: TetMesh { points, tets },
-        patches: names.map(|(id, name, cap)| Patch { id, name: name.into(), cap }).to_vec(),
-        ..VolumeMesh::default()
-    }
-}
 
 fn written(flow: Flow) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -10,6 +10,7 @@ mod error;
 mod fields;
 pub(super) mod file;
 mod layout;
+mod mixed;
 mod names;
 mod pieces;
 mod read;
@@ -19,6 +20,7 @@ mod write;
 
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
+pub(super) use mixed::write_mixed;
 pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};

@@ -2,7 +2,10 @@
 
 /// VTK cell types.
 pub(super) const VTK_TRIANGLE: u8 = 5;
+pub(super) const VTK_QUAD: u8 = 9;
 pub(super) const VTK_TETRA: u8 = 10;
+pub(super) const VTK_PRISM: u8 = 13;
+pub(super) const VTK_PYRAMID: u8 = 14;
 
 /// Names of the field arrays.
 pub(super) mod field {

@@ -2,11 +2,12 @@
 
 use super::error::VtuFault;
 use super::fields::Fields;
-use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE};
+use super::names::{GLOBAL_IDS, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
 use crate::volume::content::MeshFile;
 use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::stacks::Polyhedra;
 
 /// Cell arrays that are used as boundary labels, in order of preference.
 const LABEL_ARRAYS: [&str; 9] = [
@@ -21,7 +22,8 @@ const LABEL_ARRAYS: [&str; 9] = [
     "medit:ref",
 ];
 
-/// Reads a mesh from the bytes of a `.vtu` file. Tetrahedra and triangles are read; vertex and line cells are skipped.
+/// Reads a mesh from the bytes of a `.vtu` file. Prisms, pyramids and quadrilaterals are split into tetrahedra and
+/// triangles; vertex and line cells are skipped.
 /// Point ids that are negative or exceed 32 bits become `u32::MAX`, which a check detects.
 ///
 /// # Errors
@@ -36,6 +38,8 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, VtuFault> {
 #[derive(Default)]
 pub(in crate::volume) struct GridReader {
     volume: VolumeMesh,
+    /// Cells to split.
+    polyhedra: Polyhedra,
     /// Name of the label array; later pieces use that of the first.
     label_array: Option<&'static str>,
     /// Field data of the first file that has any.
@@ -59,7 +63,8 @@ impl GridReader {
     }
 
     /// Returns the mesh, and the global ids of its points, which are complete or empty.
-    pub(in crate::volume) fn finish(self) -> (MeshFile, Vec<i64>) {
+    pub(in crate::volume) fn finish(mut self) -> (MeshFile, Vec<i64>) {
+        self.polyhedra.split(&mut self.volume.mesh.tets, &mut self.volume.boundary);
         let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
         match self.label_array {
             Some(name) if !file.volume.boundary.is_empty() => {
@@ -107,17 +112,33 @@ impl GridReader {
             if at(&data.ghosts, cell) & DUPLICATE != 0 {
                 continue;
             }
+            let mut tets = |tets: &[[u32; 4]]| {
+                volume.mesh.tets.extend(tets);
+                volume.tet_block.resize(volume.mesh.tets.len(), at(&data.blocks, cell));
+                volume.mesh.tets.len() - tets.len()
+            };
+            let mut faces = |faces: &[[u32; 3]]| {
+                volume.boundary.extend(faces);
+                volume.boundary_patch.resize(volume.boundary.len(), at(&data.labels, cell));
+                volume.boundary_block.resize(volume.boundary.len(), at(&data.blocks, cell));
+                volume.boundary.len() - faces.len()
+            };
+            // Cells to split are filled in at the end.
             match (kind as u8, ids) {
-                (VTK_TETRA, &[a, b, c, d]) => {
-                    volume.mesh.tets.push([id(a), id(b), id(c), id(d)]);
-                    volume.tet_block.push(at(&data.blocks, cell));
+                (VTK_TETRA, &[a, b, c, d]) => drop(tets(&[[id(a), id(b), id(c), id(d)]])),
+                (VTK_TRIANGLE, &[a, b, c]) => drop(faces(&[[id(a), id(b), id(c)]])),
+                (VTK_PRISM, &[a, b, c, d, e, f]) => {
+                    self.polyhedra.prisms.push((tets(&[[0; 4]; 3]), [a, b, c, d, e, f].map(id)));
                 }
-                (VTK_TRIANGLE, &[a, b, c]) => {
-                    volume.boundary.push([id(a), id(b), id(c)]);
-                    volume.boundary_patch.push(at(&data.labels, cell));
-                    volume.boundary_block.push(at(&data.blocks, cell));
+                (VTK_PYRAMID, &[a, b, c, d, e]) => {
+                    self.polyhedra.pyramids.push((tets(&[[0; 4]; 2]), [a, b, c, d, e].map(id)));
                 }
-                (VTK_TETRA | VTK_TRIANGLE, _) => return Err(VtuFault::BadOffset { cell }),
+                (VTK_QUAD, &[a, b, c, d]) => {
+                    self.polyhedra.quads.push((faces(&[[0; 3]; 2]), [a, b, c, d].map(id)));
+                }
+                (VTK_TETRA | VTK_TRIANGLE | VTK_PRISM | VTK_PYRAMID | VTK_QUAD, _) => {
+                    return Err(VtuFault::BadOffset { cell });
+                }
                 // Empty, vertex and line cells bound no volume.
                 (0..=4, _) => {}
                 _ => return Err(VtuFault::UnsupportedCell { kind, cell }),
