@@ -283,13 +283,16 @@ fn oriented(quad: [u32; 4], apex: u32, tet: [u32; 4]) -> [u32; 5] {
     if inversions % 2 == 0 { [a, b, c, d, apex] } else { [a, d, c, b, apex] }
 }
 
-/// Union of two triangles with a common edge.
+/// Union of two triangles with a common edge, from its lowest vertex on.
 fn joined(one: [u32; 3], other: [u32; 3]) -> Option<[u32; 4]> {
-    (0..3).find_map(|i| {
+    let mut quad = (0..3).find_map(|i| {
         let [x, y, z] = [one[i], one[(i + 1) % 3], one[(i + 2) % 3]];
         let at = (0..3).find(|&j| [other[j], other[(j + 1) % 3]] == [y, x])?;
         Some([x, other[(at + 2) % 3], y, z])
-    })
+    })?;
+    let lowest = (0..4).min_by_key(|&i| quad[i]).unwrap_or(0);
+    quad.rotate_left(lowest);
+    Some(quad)
 }
 
 /// Triangles of a quadrilateral, by one diagonal and by the other.
