@@ -175,6 +175,15 @@ impl<'a> Words<'a> {
         there
     }
 
+    /// Takes the rest of the line, without its end and a comment.
+    pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let ends = |&b: &u8| b == b'\n' || (self.comments && b == b'#');
+        let length = rest.iter().position(ends).unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+
     /// Skips the rest of the line.
     pub(super) fn skip_line(&mut self) {
         while self.word_here().is_some() {}

@@ -5,7 +5,7 @@ use super::contacts;
 use super::error::{LayersConflict, TetError};
 use super::fill::fill;
 use super::layer::Layers;
-use super::layers::{LayerSummary, layered};
+use super::layers::{LayerSummary, Layered, layered};
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
@@ -18,6 +18,7 @@ use super::request::Request;
 use super::{delaunay, input, sized};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Tetrahedralizer of surfaces, piecewise linear complexes and points. The crate's page has an example.
@@ -40,6 +41,7 @@ pub struct Tetrahedralizer {
     sizing: Sizing,
     boundary: Boundary,
     layers: Option<Layers>,
+    layers_on: Vec<i32>,
     optimize: bool,
     effort: Effort,
     strict: bool,
@@ -98,6 +100,7 @@ impl Default for Tetrahedralizer {
             sizing: Sizing::default(),
             boundary: Boundary::default(),
             layers: None,
+            layers_on: Vec::new(),
             optimize: true,
             effort: Effort::Full,
             strict: false,
@@ -152,6 +155,17 @@ impl Tetrahedralizer {
     #[must_use]
     pub fn layers(mut self, layers: impl Into<Option<Layers>>) -> Self {
         self.layers = layers.into();
+        self
+    }
+
+    /// Limits the layers to triangles with these markers; an empty list stands for all triangles.
+    ///
+    /// Flat parts with other markers, such as inlets, shrink towards their centres in their plane, and a ring of layers
+    /// takes the rest of their area. These parts then have more triangles than the input. Layers end with thickness zero
+    /// at parts that are curved or not star-shaped, which stay unchanged.
+    #[must_use]
+    pub fn layers_on(mut self, markers: impl Into<Vec<i32>>) -> Self {
+        self.layers_on = markers.into();
         self
     }
 
@@ -231,9 +245,12 @@ impl Tetrahedralizer {
             label: true,
             watch: &watch,
         };
-        let (filled, layers) = match &self.layers {
-            Some(layers) => layered(&request, layers).map(|(filled, about)| (filled, Some(about)))?,
-            None => (fill(&request)?, None),
+        let (filled, layers, outer) = match &self.layers {
+            Some(layers) => {
+                let Layered { filled, summary, outer } = layered(&request, layers, (plc.markers, &self.layers_on))?;
+                (filled, Some(summary), outer)
+            }
+            None => (fill(&request)?, None, None),
         };
         let outward = |(t, place): (&[u32; 3], &Place)| match place {
             Place::Reversed => [t[0], t[2], t[1]],
@@ -241,11 +258,19 @@ impl Tetrahedralizer {
         };
         let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
         let outside = &filled.left_out.triangles;
-        let kept = filled.left_out.kept_surface(surface);
-        let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(surface), outside) };
+        let (kept, origins, face_markers) = match outer {
+            Some((outer, origins)) => {
+                let markers = origins.iter().filter_map(|&t| plc.markers.get(t as usize).copied()).collect();
+                (Cow::Owned(outer), origins, markers)
+            }
+            None => {
+                let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(surface), outside) };
+                (filled.left_out.kept_surface(surface), origins, without(plc.markers, outside))
+            }
+        };
         Ok(Tetrahedralization {
             faces: kept.triangles.iter().zip(&filled.places).map(outward).collect(),
-            face_markers: without(plc.markers, outside),
+            face_markers,
             origins,
             summary: Summary {
                 recovery: filled.recovery,
@@ -271,6 +296,7 @@ impl Tetrahedralizer {
             () if self.boundary == Boundary::Split => along(LayersConflict::SplitBoundary),
             () if self.kind == InputKind::Plc => along(LayersConflict::Facets),
             () if !plc.segments.is_empty() => along(LayersConflict::Segments),
+            () if self.layers_on.iter().any(|marker| !plc.markers.contains(marker)) => along(LayersConflict::Marker),
             () => Ok(()),
         }
     }

@@ -134,6 +134,8 @@ pub enum LayersConflict {
     Facets,
     /// The input has segments.
     Segments,
+    /// A marker of the layers is unknown.
+    Marker,
 }
 
 impl std::fmt::Display for LayersConflict {
@@ -142,6 +144,7 @@ impl std::fmt::Display for LayersConflict {
             Self::SplitBoundary => "the boundary may be split",
             Self::Facets => "the input is a complex of facets",
             Self::Segments => "the input has segments",
+            Self::Marker => "no triangle of the input has one of their markers",
         })
     }
 }

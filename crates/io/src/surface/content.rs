@@ -17,6 +17,10 @@ pub struct SurfaceContent {
     pub face_of: Vec<u32>,
     /// First corner at each point, counted from 0 through all faces, if corners were merged (STL); otherwise empty.
     pub corner_of: Vec<u32>,
+    /// Marker of each triangle; empty if the file has none.
+    pub markers: Vec<i32>,
+    /// Names of markers, ascending.
+    pub names: Vec<(i32, String)>,
     /// Anomalies of the file that did not prevent reading.
     pub notes: Vec<SurfaceNote>,
 }
@@ -36,6 +40,31 @@ pub enum SurfaceNote {
         /// Announced number of triangles.
         triangles: usize,
     },
+}
+
+impl SurfaceContent {
+    /// Sets the markers of the faces of the file.
+    pub(super) fn marked(mut self, of_faces: Vec<i32>) -> Self {
+        self.markers = match self.face_of.as_slice() {
+            [] => of_faces,
+            face_of => face_of.iter().map(|&face| of_faces.get(face as usize).copied().unwrap_or(0)).collect(),
+        };
+        self
+    }
+
+    /// Sets the groups of the faces of the file as markers, from 1 in the order of first use. One group is none.
+    pub(super) fn grouped(mut self, of_faces: &[u32], names: &[String]) -> Self {
+        let mut markers: Vec<Option<i32>> = vec![None; names.len()];
+        let marker = |&group: &u32| {
+            let next = self.names.len() as i32 + 1;
+            *markers[group as usize].get_or_insert_with(|| {
+                self.names.push((next, names[group as usize].clone()));
+                next
+            })
+        };
+        let of_faces: Vec<i32> = of_faces.iter().map(marker).collect();
+        if self.names.len() > 1 { self.marked(of_faces) } else { Self { names: Vec::new(), ..self } }
+    }
 }
 
 impl From<TriMesh> for SurfaceContent {

@@ -3,6 +3,7 @@
 use crate::file::FileError;
 use crate::npy::NpyError;
 use crate::text::{Place, TextFault, shown};
+use crate::vtk_xml::VtkError;
 use anastomesh_mesh::facets::FacetError;
 use anastomesh_mesh::units::counted;
 
@@ -19,6 +20,35 @@ pub enum SurfaceFault {
     /// An array is missing or invalid.
     #[error(transparent)]
     Npy(#[from] NpyError),
+    /// The VTK file is damaged or of another type.
+    #[error("{reason}")]
+    Vtk {
+        /// Reason.
+        reason: String,
+    },
+    /// The length of an array differs from the counts of the file.
+    #[error("array '{array}' has {found} values instead of {expected}: write or copy the file again")]
+    ArrayLength {
+        /// Array name.
+        array: String,
+        /// Expected length.
+        expected: usize,
+        /// Length found.
+        found: usize,
+    },
+    /// The offsets of faces are not ascending or exceed the connectivity.
+    #[error(
+        "face {face} (from 0) ends at offset {offset}, which is out of order or beyond the {length} indices: \
+         correct the offsets"
+    )]
+    BadOffset {
+        /// The first such face.
+        face: usize,
+        /// Offset that was found.
+        offset: i64,
+        /// Number of indices.
+        length: usize,
+    },
     /// A face has too few corners, or too many in a triangle-only format.
     #[error("{place}: face {face} has {corners} corners, not a polygon: correct or remove it")]
     NotATriangle {
@@ -105,6 +135,12 @@ pub enum SurfaceFault {
         /// Number of points.
         points: usize,
     },
+}
+
+impl From<VtkError> for SurfaceFault {
+    fn from(error: VtkError) -> Self {
+        Self::Vtk { reason: error.to_string() }
+    }
 }
 
 impl SurfaceFault {

@@ -14,8 +14,10 @@ pub enum SurfaceFormat {
     Ply,
     /// Stereolithography, `.stl`: text or binary. Equal corners are merged, as it has no shared vertices.
     Stl,
-    /// Wavefront, `.obj`: vertices and faces; everything else is ignored.
+    /// Wavefront, `.obj`: vertices and faces; groups, objects or materials are markers; everything else is ignored.
     Obj,
+    /// VTK poly data, `.vtp`: polygons. The extension alone stands for a network, so the format must be named.
+    Vtp,
 }
 
 /// Extensions in lower case.

@@ -6,6 +6,7 @@ mod error;
 mod faces;
 mod format;
 mod glb;
+mod groups;
 mod npy;
 mod obj;
 mod off;
@@ -15,6 +16,7 @@ mod stl;
 #[cfg(test)]
 mod tests;
 mod three_mf;
+mod vtp;
 mod write;
 
 pub use boundary::{ensure_boundary_writable, write_boundary, write_boundary_watched};

@@ -1,8 +1,10 @@
-//! OBJ format: lines `v x y z` and `f v/vt/vn …`; negative indices count back from the last vertex so far.
+//! OBJ format: lines `v x y z` and `f v/vt/vn …`; negative indices count back from the last vertex so far. Groups (`g`)
+//! are markers of faces, or else objects (`o`) or materials (`usemtl`).
 
 use super::content::SurfaceContent;
 use super::error::SurfaceFault;
 use super::faces::Faces;
+use super::groups::Groups;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
 use anastomesh_mesh::TriMesh;
@@ -14,7 +16,8 @@ use std::io::{self, Write};
 pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, true);
     // Vertices may follow the faces that refer to them, so corners are checked at the end.
-    let mut reader = Reader { points: Vec::new(), faces: Faces::new(u32::MAX as usize - 1, 1, 0), ahead: None };
+    let faces = Faces::new(u32::MAX as usize - 1, 1, 0);
+    let mut reader = Reader { points: Vec::new(), faces, groups: Default::default(), ahead: None };
     while let Some(keyword) = words.word() {
         match keyword {
             b"v" => {
@@ -27,6 +30,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
                 reader.points.push(words.point_here()?);
             }
             b"f" => reader.read_face(&mut words)?,
+            b"g" => reader.groups[0].begin(words.rest_of_line()),
+            b"o" => reader.groups[1].begin(words.rest_of_line()),
+            b"usemtl" => reader.groups[2].begin(words.rest_of_line()),
             _ => {}
         }
         words.skip_line();
@@ -44,6 +50,8 @@ struct Ahead {
 struct Reader {
     points: Vec<Point3>,
     faces: Faces,
+    /// Groups, objects and materials.
+    groups: [Groups; 3],
     /// Face with the reference to the highest later vertex.
     ahead: Option<Ahead>,
 }
@@ -61,6 +69,7 @@ impl Reader {
             let named = words.as_integer(named, "a corner of a face")?;
             self.corner(named, line)?;
         }
+        self.groups.iter_mut().for_each(Groups::add_face);
         self.faces.end_face(Place::Line(line))
     }
 
@@ -83,7 +92,12 @@ impl Reader {
     fn finish(self) -> Result<SurfaceContent, SurfaceFault> {
         match &self.ahead {
             Some(ahead) if ahead.index > self.points.len() as i64 => Err(self.bad_index(ahead)),
-            _ => self.faces.into_surface(self.points),
+            _ => {
+                let content = self.faces.into_surface(self.points)?;
+                let Some(groups) = self.groups.iter().find(|groups| groups.are_several()) else { return Ok(content) };
+                let (of_faces, names) = groups.parts();
+                Ok(content.grouped(of_faces, names))
+            }
         }
     }
 }

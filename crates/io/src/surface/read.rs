@@ -3,7 +3,7 @@
 use super::content::SurfaceContent;
 use super::error::{SurfaceFault, SurfaceFileError};
 use super::format::SurfaceFormat;
-use super::{obj, off, ply, stl};
+use super::{obj, off, ply, stl, vtp};
 use crate::file::{FileError, read_bytes};
 use anastomesh_mesh::TriMesh;
 use std::path::Path;
@@ -58,6 +58,7 @@ pub fn read_content_from(bytes: &[u8], format: SurfaceFormat) -> Result<SurfaceC
         SurfaceFormat::Ply => ply::read(bytes)?,
         SurfaceFormat::Stl => stl::read(bytes)?,
         SurfaceFormat::Obj => obj::read(bytes)?,
+        SurfaceFormat::Vtp => vtp::read(bytes)?,
     };
     if content.mesh.triangles.is_empty() {
         return Err(SurfaceFault::NoFaces { points: content.mesh.points.len() });

@@ -2,6 +2,7 @@
 
 use super::content::{SurfaceContent, SurfaceNote};
 use super::error::SurfaceFault;
+use super::groups::Groups;
 use crate::text::Place;
 use crate::text::{TextFault, Words};
 use anastomesh_mesh::TriMesh;
@@ -93,6 +94,7 @@ fn read_binary(bytes: &[u8], announced: Option<u64>) -> Result<SurfaceContent, S
 fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let mut words = Words::new(bytes, false);
     let mut joiner = Joiner::default();
+    let mut solids = Groups::default();
     let mut triangle = [0; 3];
     // Corners of the open loop.
     let mut corners: Option<usize> = None;
@@ -101,7 +103,10 @@ fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
         let place = Place::Line(words.line());
         let unexpected = |expected| SurfaceFault::unexpected(word, expected, place);
         match word.to_ascii_lowercase().as_slice() {
-            b"solid" if corners.is_none() => open = true,
+            b"solid" if corners.is_none() => {
+                solids.begin(words.rest_of_line());
+                open = true;
+            }
             b"endsolid" if corners.is_none() => open = false,
             b"outer" if open && corners.is_none() => corners = Some(0),
             b"vertex" => {
@@ -115,7 +120,10 @@ fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
             b"endloop" => {
                 let face = joiner.mesh.triangles.len();
                 match corners.take().ok_or_else(|| unexpected("'outer loop'"))? {
-                    3 if face < (u32::MAX / 3) as usize => joiner.mesh.triangles.push(triangle),
+                    3 if face < (u32::MAX / 3) as usize => {
+                        joiner.mesh.triangles.push(triangle);
+                        solids.add_face();
+                    }
                     count => return Err(SurfaceFault::NotATriangle { face, corners: count as i64, place }),
                 }
             }
@@ -127,7 +135,8 @@ fn read_text(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     if open {
         return Err(TextFault::CutShort { line: words.line(), missing: "'endsolid'" }.into());
     }
-    Ok(joiner.into_content())
+    let (of_faces, names) = solids.parts();
+    Ok(joiner.into_content().grouped(of_faces, names))
 }
 
 /// Writes binary if all coordinates are exact in 32 bits, otherwise text.

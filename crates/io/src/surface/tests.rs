@@ -340,3 +340,68 @@ proptest! {
         }
     }
 }
+
+/// Markers and names of a file.
+fn markers(bytes: &[u8], format: SurfaceFormat) -> (Vec<i32>, Vec<(i32, String)>) {
+    let content = read_content_from(bytes, format).unwrap();
+    (content.markers, content.names)
+}
+
+#[test]
+fn groups_of_obj_are_markers() {
+    let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    let named = |a: &str, b: &str| vec![(1, a.to_owned()), (2, b.to_owned())];
+    let groups = format!(
+        "{points}o all\ng outer wall # of the vessel\nf 1 2 3 4\ng cap\nf 1 2 3\ng outer wall # of the vessel\nf 2 3 4\n"
+    );
+    // A quadrilateral is two triangles.
+    let (of_faces, names) = markers(groups.as_bytes(), SurfaceFormat::Obj);
+    assert_eq!((of_faces, names[1].clone()), (vec![1, 1, 2, 1], (2, "cap".into())));
+    let materials = format!("{points}usemtl a\nf 1 2 3\nusemtl b\nf 2 3 4\n");
+    assert_eq!(markers(materials.as_bytes(), SurfaceFormat::Obj), (vec![1, 2], named("a", "b")));
+    let single = format!("{points}g a\nf 1 2 3\nf 2 3 4\n");
+    assert_eq!(markers(single.as_bytes(), SurfaceFormat::Obj), (vec![], vec![]));
+}
+
+#[test]
+fn solids_of_stl_are_markers() {
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let solids = format!("solid wall\n{facet}endsolid wall\nsolid inlet 1\n{facet}{facet}endsolid\n");
+    let (of_faces, names) = markers(solids.as_bytes(), SurfaceFormat::Stl);
+    assert_eq!((of_faces, names), (vec![1, 2, 2], vec![(1, "wall".into()), (2, "inlet 1".into())]));
+    let single = format!("solid wall\n{facet}endsolid wall\n");
+    assert_eq!(markers(single.as_bytes(), SurfaceFormat::Stl).0, [0; 0]);
+}
+
+#[test]
+fn integer_properties_of_ply_faces_are_markers() {
+    let head = |kind: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 2\n\
+             property {kind} label\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+        )
+    };
+    let of_ints = format!("{}7 4 0 1 2 3\n-3 3 0 1 2\n", head("int"));
+    assert_eq!(markers(of_ints.as_bytes(), SurfaceFormat::Ply).0, [7, 7, -3]);
+    let of_floats = format!("{}7 4 0 1 2 3\n-3 3 0 1 2\n", head("float"));
+    assert_eq!(markers(of_floats.as_bytes(), SurfaceFormat::Ply).0, [0; 0]);
+}
+
+#[test]
+fn polygons_of_vtp_have_the_face_ids_of_simvascular() {
+    let file = |offsets: &str| {
+        format!(
+            "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"4\" NumberOfVerts=\"1\" NumberOfLines=\"0\" \
+             NumberOfStrips=\"0\" NumberOfPolys=\"2\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\
+             0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points><Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\
+             0 1 2 3 0 1 2</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{offsets}</DataArray></Polys>\
+             <CellData><DataArray type=\"Int32\" Name=\"ModelFaceID\" format=\"ascii\">9 2 5</DataArray></CellData>\
+             </Piece></PolyData></VTKFile>"
+        )
+    };
+    let content = read_content_from(file("4 7").as_bytes(), SurfaceFormat::Vtp).unwrap();
+    assert_eq!((content.markers, content.mesh.triangles.len()), (vec![2, 2, 5], 3));
+    for offsets in ["4 8", "4 3", "4"] {
+        assert!(read_content_from(file(offsets).as_bytes(), SurfaceFormat::Vtp).is_err(), "{offsets}");
+    }
+}

@@ -37,5 +37,7 @@ pub(super) fn write_format(out: &mut impl Write, format: SurfaceFormat, mesh: &T
         SurfaceFormat::Ply => ply::write(out, mesh),
         SurfaceFormat::Stl => stl::write(out, mesh),
         SurfaceFormat::Obj => obj::write(out, mesh),
+        // No path has this format, and boundaries have a writer of their own.
+        SurfaceFormat::Vtp => Err(io::ErrorKind::Unsupported.into()),
     }
 }

@@ -320,7 +320,8 @@ mod tests {
         let mut boundary_patch = vec![WALL + 1; boundary.len()];
         boundary_patch[0] = WALL;
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        let mut points: Vec<Point3> = (0..2).flat_map(|z| corners.map(|[x, y]| Point3::new(x, y, -f64::from(z)))).collect();
+        let mut points: Vec<Point3> =
+            (0..2).flat_map(|z| corners.map(|[x, y]| Point3::new(x, y, -f64::from(z)))).collect();
         points.extend([Point3::new(2.0, 2.0, -0.5), Point3::new(2.0, 2.0, -0.6)]);
         let mesh = TetMesh { points, tets };
         VolumeMesh { mesh, boundary, boundary_patch, ..VolumeMesh::default() }

@@ -9,6 +9,7 @@
 //! The offset depends on the thickness asked for and on the clearance (`room`). If a prism is inverted or the inner
 //! surface intersects itself, positions move back towards the wall (`inset`). At offset zero there is no layer.
 
+mod caps;
 mod direction;
 mod half_width;
 mod inset;
@@ -21,4 +22,4 @@ pub use direction::Directions;
 pub use inset::{Inset, Places, inset};
 pub use stack::{Numbers, rims, toward};
 pub use whole::LayerSummary;
-pub(super) use whole::layered;
+pub(super) use whole::{Layered, layered};

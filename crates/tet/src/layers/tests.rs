@@ -159,3 +159,80 @@ fn bounds_are_for_what_is_inside_of_the_layers() {
     let fine = crate::Refinement::default().max_volume(2e-4);
     assert!(inside(Some(fine)) > 2 * inside(None));
 }
+
+/// Tube along z with walls (marker 1) and flat ends (markers 2 and 3), each with a vertex in the middle.
+fn capped_tube() -> Plc {
+    let (around, rings) = (16_u32, 7_u32);
+    let on_ring = |ring: u32, i: u32| {
+        let turn = std::f64::consts::TAU * f64::from(i) / f64::from(around);
+        Point3::new(turn.cos(), turn.sin(), 0.5 * f64::from(ring))
+    };
+    let mut points: Vec<Point3> = (0..rings).flat_map(|ring| (0..around).map(move |i| on_ring(ring, i))).collect();
+    points.extend([0, rings - 1].map(|ring| Point3::new(0.1, 0.0, 0.5 * f64::from(ring))));
+    let at = |ring: u32, i: u32| ring * around + i % around;
+    let (mut triangles, mut markers) = (Vec::new(), Vec::new());
+    for ring in 0..rings - 1 {
+        for i in 0..around {
+            let [a, b, c, d] = [at(ring, i), at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+            markers.extend([1, 1]);
+        }
+    }
+    for i in 0..around {
+        triangles.extend([
+            [at(0, i + 1), at(0, i), rings * around],
+            [at(rings - 1, i), at(rings - 1, i + 1), rings * around + 1],
+        ]);
+        markers.extend([2, 3]);
+    }
+    Plc::new(points, triangles).markers(markers)
+}
+
+fn area(made: &Tetrahedralization, marker: i32) -> f64 {
+    let chosen = made.faces.iter().zip(&made.face_markers).filter(|(_, m)| **m == marker);
+    let doubled = |face: &[u32; 3]| {
+        let [a, b, c] = face.map(|v| made.mesh.points[v as usize]);
+        (b - a).cross(&(c - a)).norm()
+    };
+    chosen.map(|(face, _)| 0.5 * doubled(face)).sum()
+}
+
+#[test]
+fn layers_on_a_marker_end_in_rings_on_flat_ends() {
+    let plc = capped_tube();
+    let plain = Tetrahedralizer::new().run(&plc).expect("certified");
+    let made = Tetrahedralizer::new().layers(THREE).layers_on(vec![1]).run(&plc).expect("certified");
+    let summary = made.summary.layers.as_ref().expect("a summary");
+    let wall = plc.markers.iter().filter(|m| **m == 1).count();
+    assert_eq!((summary.tets, summary.shrunk_caps, summary.kept_caps), (9 * wall, 2, 0));
+    assert!(summary.without.is_empty() && summary.thin == 0, "{summary:?}");
+    // Each of the 16 edges of a rim has three quadrilaterals.
+    assert_eq!(made.faces.len(), plc.surface.triangles.len() + 2 * 16 * 3 * 2);
+    assert_eq!((made.origins.len(), made.face_markers.len()), (made.faces.len(), made.faces.len()));
+    for marker in [1, 2, 3] {
+        assert!((area(&made, marker) - area(&plain, marker)).abs() < 1e-12);
+    }
+    // No wall triangle changes.
+    assert!(plc.surface.triangles.iter().zip(&plc.markers).all(|(t, m)| *m != 1 || made.faces.contains(t)));
+    // Each layer tetrahedron is beside the wall, so the core reaches both ends.
+    let centre = |tet: &[u32; 4]| tet.iter().map(|&v| made.mesh.points[v as usize].coords).sum::<Vec3>() / 4.0;
+    assert!(made.mesh.tets[..summary.tets].iter().map(centre).all(|p| p.xy().norm() > 0.6));
+    assert!(made.mesh.tets[summary.tets..].iter().map(centre).any(|p| p.z < 0.2));
+    let unknown = Tetrahedralizer::new().layers(THREE).layers_on(vec![1, 7]).run(&plc);
+    assert!(matches!(unknown, Err(TetError::LayersAlong(_))), "{unknown:?}");
+}
+
+#[test]
+fn layers_vanish_towards_curved_parts_without_layers() {
+    let sphere = sphere_surface(3);
+    let is_upper = |t: &[u32; 3]| t.iter().all(|&v| sphere.points[v as usize].z > -1e-9);
+    let markers: Vec<i32> = sphere.triangles.iter().map(|t| if is_upper(t) { 2 } else { 1 }).collect();
+    let plc = Plc::from(&sphere).markers(markers);
+    let made = Tetrahedralizer::new().layers(THREE).layers_on(vec![1]).run(&plc).expect("certified");
+    let summary = made.summary.layers.expect("a summary");
+    assert_eq!((summary.shrunk_caps, summary.kept_caps), (0, 1));
+    assert!(!summary.without.is_empty() && summary.without.iter().all(|&v| sphere.points[v as usize].z > -0.2));
+    assert_eq!(made.mesh.points[..sphere.points.len()], sphere.points);
+    assert_eq!(made.faces.len(), sphere.triangles.len());
+    assert!(summary.tets > 3 * sphere.triangles.len() && summary.tets < 5 * sphere.triangles.len());
+}

@@ -7,6 +7,9 @@ use crate::surface::error::SurfaceFault;
 use crate::surface::faces::Faces;
 use anastomesh_mesh::geometry::Point3;
 
+/// Names of integer properties that are read as markers of faces.
+const MARKERS: [&[u8]; 7] = [b"marker", b"label", b"patch", b"group", b"region", b"ModelFaceID", b"boundary_marker"];
+
 /// Parses a file.
 pub(in crate::surface) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFault> {
     let head = parse(bytes)?;
@@ -32,7 +35,8 @@ pub(in crate::surface) fn read(bytes: &[u8]) -> Result<SurfaceContent, SurfaceFa
         return Err(SurfaceFault::Missing { what: "the element 'vertex'" });
     }
     data.expect_end()?;
-    list.unwrap_or_else(|| Faces::new(points, 0, 0)).into_surface(positions)
+    let (faces, markers) = list.unwrap_or_else(|| (Faces::new(points, 0, 0), Vec::new()));
+    Ok(faces.into_surface(positions)?.marked(markers))
 }
 
 fn skip_items(data: &mut Data, element: &PlyElement) -> Result<(), SurfaceFault> {
@@ -75,13 +79,24 @@ fn read_vertices(data: &mut Data, element: &PlyElement, points: &mut Vec<Point3>
     Ok(())
 }
 
-fn read_faces(data: &mut Data, element: &PlyElement, points: usize) -> Result<Faces, SurfaceFault> {
+/// Reads faces and their markers.
+fn read_faces(data: &mut Data, element: &PlyElement, points: usize) -> Result<(Faces, Vec<i32>), SurfaceFault> {
     const MISSING: SurfaceFault = SurfaceFault::Missing { what: "the list vertex_indices of the faces" };
     let list = element.property(&[b"vertex_indices", b"vertex_index"]).ok_or(MISSING)?;
     let counted = element.properties[list].count.ok_or(MISSING)?;
+    let is_marker = |i: &usize| element.properties[*i].count.is_none() && !element.properties[*i].value.is_float();
+    let marker = element.property(&MARKERS).filter(is_marker);
     let mut faces = Faces::new(points, 0, element.count as usize);
+    let mut markers = Vec::new();
     for _ in 0..element.count {
         for (index, property) in element.properties.iter().enumerate() {
+            if Some(index) == marker {
+                let place = data.place();
+                let value = data.integer(property.value)?;
+                let found = || SurfaceFault::unexpected(value.to_string().as_bytes(), "a marker within 32 bits", place);
+                markers.push(i32::try_from(value).map_err(|_| found())?);
+                continue;
+            }
             if index != list {
                 skip_property(data, element, index)?;
                 continue;
@@ -95,5 +110,5 @@ fn read_faces(data: &mut Data, element: &PlyElement, points: usize) -> Result<Fa
             faces.end_face(place)?;
         }
     }
-    Ok(faces)
+    Ok((faces, markers))
 }

@@ -126,7 +126,11 @@ impl MshSections {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
-            let groups = if matches!(kind, MSH_TETRA | MSH_PRISM | MSH_PYRAMID) { &self.group_of_volume } else { &self.group_of_surface };
+            let groups = if matches!(kind, MSH_TETRA | MSH_PRISM | MSH_PYRAMID) {
+                &self.group_of_volume
+            } else {
+                &self.group_of_surface
+            };
             let group = groups.get(&entity).copied().unwrap_or(0);
             for _ in 0..cursor.size()? {
                 let tag = cursor.size()?;

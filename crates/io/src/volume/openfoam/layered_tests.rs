@@ -1,8 +1,8 @@
 //! Tests of meshes with layers, flow in time and outlet models.
 
 use super::*;
-use crate::volume::fixtures::slab;
 use crate::flow::{CapFlow, OutletModel, Profile, Transient, Waveform};
+use crate::volume::fixtures::slab;
 use crate::volume::{WriteOptions, write_mesh, write_mesh_with};
 use std::fs;
 

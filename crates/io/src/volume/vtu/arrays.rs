@@ -225,7 +225,9 @@ pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [Ar
 
 /// Types of cells.
 pub(super) fn types_array<'a>(types: Vec<u8>) -> ArrayWriter<'a> {
-    ArrayWriter::new(ArrayLocation::Cells, "types", UINT8, types.len(), move |out| out.push(types.len(), |i| [types[i]]))
+    ArrayWriter::new(ArrayLocation::Cells, "types", UINT8, types.len(), move |out| {
+        out.push(types.len(), |i| [types[i]])
+    })
 }
 
 /// Points, triangles and labels of a boundary.

@@ -37,7 +37,8 @@ pub(in crate::volume) fn write_mixed(
     let faces: &[_] = if options.tets_alone { &[] } else { &mixed.faces };
     let cells = mixed.cells.iter().map(|cell| (cell.vertices(), kind_of_cell(cell.vertices())));
     let all = || cells.clone().chain(faces.iter().map(|face| (face.vertices(), kind_of_face(face.vertices()))));
-    let too_many = || io::Error::new(io::ErrorKind::InvalidInput, "a grid with prisms is limited to 2³¹ vertex numbers");
+    let too_many =
+        || io::Error::new(io::ErrorKind::InvalidInput, "a grid with prisms is limited to 2³¹ vertex numbers");
     let mut end = 0_i32;
     let mut ends = Vec::with_capacity(mixed.cells.len() + faces.len());
     for (vertices, _) in all() {
