@@ -6,7 +6,7 @@ use super::estimate::{Estimate, cluster_cost};
 use super::plan::MeshPlan;
 use super::routes::tangled_clusters;
 use crate::partition;
-use anastomesh_network::split;
+use anastomesh_network::split_in_place;
 use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -46,7 +46,7 @@ impl Forecast {
     /// # Errors
     /// The network cannot be partitioned.
     pub fn of(network: &Skeleton, plan: &MeshPlan) -> Result<Self, RunError> {
-        let (network, _) = split(network);
+        let (network, _) = split_in_place(network);
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
         let network = Arc::new(network);
         let partition = partition::lay_out(&network, &params, &())?.sized(plan.size_at.clone());

@@ -5,7 +5,7 @@ use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_network::{Island, PrepareReport, TouchedBy, TouchingTip, take_back};
 use anastomesh_network::{RefineReport, Refined};
-use anastomesh_skeleton::{EdgeId, NodeId, Overlap, Skeleton, clean};
+use anastomesh_skeleton::{EdgeId, LocalDistances, NodeId, Overlap, Skeleton, clean};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
@@ -48,6 +48,13 @@ pub struct RefinedAxis {
 const HOPELESS: f64 = 0.6;
 /// Maximum number of edges of a measured network that is meshed as given although such vessels overlap.
 const SMALL: usize = 10_000;
+/// Maximum number of overlaps of vessels without a common node for which only the overlapping vessels of a grown network are
+/// moved: a number, and a fraction of the edges.
+const FEW: (usize, f64) = (3, 0.015);
+/// Distance along the vessels, in sums of radii, from which such an overlap joins two lumens whatever the network is.
+const FAR: f64 = 6.0;
+/// Maximum number of overlaps for which that distance is searched.
+const SEARCHED: usize = 1000;
 
 impl Networks {
     pub(super) fn new(
@@ -120,7 +127,40 @@ impl Networks {
     /// so those are meshed as given unless that takes long.
     pub(super) fn may_be_sound_as_given(&self) -> bool {
         let is_small = self.prepare.measured && self.prepared.edges.len() <= SMALL;
-        is_small || !self.overlaps_apart(HOPELESS)
+        if is_small { !self.excludes_a_mesh() } else { !self.overlaps_apart(HOPELESS) }
+    }
+
+    /// True if few vessels of a grown network overlap, so that it may suffice to move these.
+    pub(super) fn may_move_locally(&self) -> bool {
+        let network = &self.prepared;
+        let overlaps = network.overlaps(&network.adjacency()).pairs;
+        let apart = overlaps.iter().filter(|overlap| !overlap.shares_node()).count();
+        !self.prepare.measured && (apart <= FEW.0 || apart as f64 <= FEW.1 * network.edges.len() as f64)
+    }
+
+    /// True if overlaps of the prepared network exclude a valid mesh without refinement. Distant vessels overlap so deeply that
+    /// their walls intersect, or their lumens join. Overlaps at tips do not count, as tips can be retracted.
+    pub(super) fn excludes_a_mesh(&self) -> bool {
+        let network = &self.prepared;
+        let adjacency = network.adjacency();
+        let is_tip = |node: NodeId| adjacency.valence(node) < 2;
+        let at_tip = |overlap: &Overlap| {
+            let near = |(nodes, point): (&[NodeId; 2], &Point3)| {
+                nodes.iter().any(|&n| is_tip(n) && (network.node(n).position - point).norm() < FAR * overlap.radii)
+            };
+            overlap.nodes.iter().zip(&overlap.points).any(near)
+        };
+        let mut along = LocalDistances::default();
+        let mut is_far = |overlap: &Overlap| {
+            let [a, b] = overlap.nodes;
+            a.into_iter().all(|start| {
+                along.search(network, &adjacency, start, FAR * overlap.radii);
+                b.into_iter().all(|end| along.of(end).is_infinite())
+            })
+        };
+        let overlaps = network.overlaps(&adjacency).pairs;
+        let deep = overlaps.iter().filter(|o| o.distance < HOPELESS * o.radii && !at_tip(o));
+        deep.take(SEARCHED).any(|overlap| is_far(overlap))
     }
 
     /// True if vessels that leave no common bifurcation overlap, with axes closer than a share of their radii.

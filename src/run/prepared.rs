@@ -14,7 +14,7 @@ use anastomesh_io::network::NetworkNote;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::gather;
-use anastomesh_network::{RefineParams, Refined, refine};
+use anastomesh_network::{Freedom, RefineParams, Refined, refine};
 
 /// Bytes of memory per tetrahedron of a mesh that is held while its joints are smoothed and it is checked.
 const HELD_PER_TET: f64 = 150.0;
@@ -56,7 +56,8 @@ impl PreparedRun {
     pub fn refined(mut self, store: Option<&Store>, progress: &dyn Progress) -> Result<Self, MeshingError> {
         // The search for overlaps comes last, as it takes a second in large networks.
         let Some(params) = self.refinement().filter(|_| self.networks.refine.is_none()) else { return Ok(self) };
-        if self.plan.smooths_joints() || !self.networks.may_be_sound_as_given() {
+        let may_move_locally = || params.freedom == Freedom::Auto && self.networks.may_move_locally();
+        if self.plan.smooths_joints() || !(self.networks.may_be_sound_as_given() || may_move_locally()) {
             self.networks = refined(&self.networks, &params, store, progress)?;
         }
         Ok(self)

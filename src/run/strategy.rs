@@ -8,7 +8,7 @@ use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, To
 use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::touching_text;
-use anastomesh_network::{RefineParams, refine};
+use anastomesh_network::{Freedom, RefineParams, refine};
 use anastomesh_skeleton::NodeId;
 use serde::Serialize;
 use std::sync::Arc;
@@ -34,6 +34,8 @@ const FINER: [f64; 2] = [2.0, 4.0];
 pub enum Strategy {
     /// The prepared network before refinement, if its overlaps do not exclude a valid mesh.
     AsGiven,
+    /// The prepared grown network, of which only overlapping vessels were moved.
+    OverlapsMoved,
     /// The prepared network, refined if the run asks for it.
     Planned,
     /// The network of the attempt before, with terminals retracted that could not be capped.
@@ -129,14 +131,24 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
 
 /// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
 fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
-    let as_given = match meshing.attempt(Strategy::AsGiven, networks.clone()) {
-        Ok(candidate) if meshing.attempts[candidate.attempt].fault.is_none() => {
+    let as_given = match networks.may_be_sound_as_given().then(|| meshing.attempt(Strategy::AsGiven, networks.clone()))
+    {
+        Some(Ok(candidate)) if meshing.attempts[candidate.attempt].fault.is_none() => {
             meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
             return Ok(candidate);
         }
-        Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
-        other => other.ok(),
+        Some(Err(failure @ Failure { error: RunError::Cancelled, .. })) => return Err(failure.into_error()),
+        // Blocks become smaller only if vessels are lengthened, so that more of them can be cut.
+        Some(Err(failure @ Failure { error: RunError::TooLarge(TooLarge::Block { .. }), .. }))
+            if !meshing.lengthens(networks) =>
+        {
+            return Err(failure.into_error());
+        }
+        other => other.and_then(Result::ok),
     };
+    if let Some(local) = meshing.with_overlaps_moved(networks)? {
+        return Ok(local);
+    }
     let networks = (meshing.refined)(networks)?;
     match (as_given, planned(networks, false, meshing)) {
         (Some(as_given), Err(Failure { error: RunError::BlocksFailed(_), .. })) => Ok(as_given),
@@ -240,6 +252,7 @@ impl<'a> Meshing<'a, '_> {
     fn networks_for(&self, strategy: Strategy, fault: Fault, networks: &Networks) -> Option<Networks> {
         match (strategy, fault) {
             (Strategy::Unrefined, Fault::Volume(_)) if !networks.overlaps_at_forks_alone() => None,
+            (Strategy::Unrefined, _) if networks.prepare.measured && networks.excludes_a_mesh() => None,
             (Strategy::Unrefined, _) => Some(networks.again(None)),
             (Strategy::WiderClearance, Fault::NoMesh | Fault::Invalid) => {
                 let params = self.refine.as_ref()?;
@@ -248,6 +261,27 @@ impl<'a> Meshing<'a, '_> {
             }
             _ => None,
         }
+    }
+
+    /// Meshes a grown network of which only overlapping vessels were moved; `None` if many overlap, or the mesh is not sound.
+    fn with_overlaps_moved(&mut self, networks: &Networks) -> Result<Option<Candidate<'a>>, MeshingError> {
+        let Some(params) = self.refine.clone().filter(|params| params.freedom == Freedom::Auto) else {
+            return Ok(None);
+        };
+        if !(self.lengthens(networks) && networks.may_move_locally()) {
+            return Ok(None);
+        }
+        let refined = refine(&networks.prepared, &params.freedom(Freedom::Measured), self.progress)?;
+        match self.attempt(Strategy::OverlapsMoved, networks.again(Some(refined))) {
+            Err(failure @ Failure { error: RunError::Cancelled, .. }) => Err(failure.into_error()),
+            Ok(candidate) if self.attempts[candidate.attempt].fault.is_none() => Ok(Some(candidate)),
+            Ok(_) | Err(_) => Ok(None),
+        }
+    }
+
+    /// True if the refinement may lengthen vessels of a network.
+    fn lengthens(&self, networks: &Networks) -> bool {
+        self.refine.as_ref().is_some_and(|params| params.lengthens(&networks.prepared))
     }
 
     /// True if the first mesh is sound and the second is not, or differs more from the given network.

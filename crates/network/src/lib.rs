@@ -39,7 +39,7 @@ pub use prepare::{
 pub use refine::{
     Crowded, CrowdedPair, Displacement, FarNode, Figures, Freedom, HistorySample, Metric, RefineError, RefineParams,
     RefineReport, Refined, Residual, ResidualPair, ResidualReport, SplitNode, SplitReport, Treatment, refine, split,
-    split_shared,
+    split_in_place, split_shared,
 };
 
 /// The example of the README is a test.

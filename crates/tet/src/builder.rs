@@ -45,6 +45,7 @@ pub struct Tetrahedralizer {
     optimize: bool,
     effort: Effort,
     strict: bool,
+    max_tets: usize,
     progress: Option<Arc<dyn Progress + Send>>,
 }
 
@@ -95,7 +96,7 @@ impl Default for Tetrahedralizer {
     fn default() -> Self {
         Self {
             kind: InputKind::default(),
-            interior: Interior::Lattice { cell: None, clearance: None },
+            interior: Interior::default(),
             refinement: None,
             sizing: Sizing::default(),
             boundary: Boundary::default(),
@@ -104,13 +105,18 @@ impl Default for Tetrahedralizer {
             optimize: true,
             effort: Effort::Full,
             strict: false,
+            max_tets: Self::MAX_TETS,
             progress: None,
         }
     }
 }
 
 impl Tetrahedralizer {
-    /// Default options: closed surfaces are kept, a lattice of points fills the interior, and the mesh is improved.
+    /// Default of [`Tetrahedralizer::max_tets`]. They need 4 to 8 GB.
+    pub const MAX_TETS: usize = 40_000_000;
+
+    /// Default options: closed surfaces are kept, points fill the interior with a spacing that grows away from the surface,
+    /// and the mesh is improved.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -191,6 +197,23 @@ impl Tetrahedralizer {
         self
     }
 
+    /// Limits the number of tetrahedra. A run that expects more ends with [`TetError::TooMany`] before it begins. A
+    /// refinement that reaches the limit ends with it, too.
+    ///
+    /// ```
+    /// use anastomesh_tet::{Sizing, TetError, Tetrahedralizer};
+    ///
+    /// let surface = anastomesh_mesh::shapes::sphere_surface(2);
+    /// let fine = Tetrahedralizer::new().sizing(Sizing::Constant(1e-4)).run(&surface);
+    /// assert!(matches!(fine, Err(TetError::TooMany { .. })));
+    /// # Ok::<(), anastomesh_tet::TetError>(())
+    /// ```
+    #[must_use]
+    pub fn max_tets(mut self, limit: usize) -> Self {
+        self.max_tets = limit;
+        self
+    }
+
     /// Listener for progress and cancellation. A cancelled run ends with [`TetError::Cancelled`].
     #[must_use]
     pub fn progress(mut self, progress: impl Progress + Send + 'static) -> Self {
@@ -224,6 +247,7 @@ impl Tetrahedralizer {
         let edges = input::validate(surface, plc.segments, self.kind)?;
         watch.report(Stage::Validate, 1, 1)?;
         self.check_layers(plc)?;
+        sized::check_growth(&self.interior, plc.regions)?;
         if self.boundary == Boundary::Split {
             sized::check(self.refinement.as_ref(), &self.sizing, surface.points.len())?;
             return self.run_split(plc);
@@ -242,6 +266,7 @@ impl Tetrahedralizer {
             certify: true,
             effort: self.effort,
             strict: self.strict,
+            max_tets: Some(self.max_tets),
             label: true,
             watch: &watch,
         };
@@ -386,6 +411,7 @@ pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> R
         certify: false,
         effort: by.effort,
         strict: true,
+        max_tets: None,
         label: false,
         watch,
     };
@@ -407,6 +433,7 @@ impl std::fmt::Debug for Tetrahedralizer {
             .field("optimize", &self.optimize)
             .field("effort", &self.effort)
             .field("strict", &self.strict)
+            .field("max_tets", &self.max_tets)
             .field("watch", &self.watch())
             .finish_non_exhaustive()
     }

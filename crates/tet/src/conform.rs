@@ -5,7 +5,7 @@ use super::error::TetError;
 use super::input;
 use super::lattice;
 use super::options::{Interior, Refinement};
-use super::progress::{Stage, Watch};
+use super::progress::Stage;
 use super::recover::exact::{Missing, RecoveryStrategy, recover_exact};
 use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
@@ -19,9 +19,6 @@ const CELL: f64 = 1.4;
 
 /// Distance of the lattice from the wall, in mean edge lengths of the surface.
 const CLEARANCE: f64 = 0.45;
-
-/// Volume of the lattice's tetrahedra relative to the volume bound.
-const VOLUME_SHARE: f64 = 0.6;
 
 /// Replaces an error by the defect of the surface that may have caused it.
 pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
@@ -133,9 +130,9 @@ fn restart(
 fn points(r: &Request) -> Result<Vec<Point3>, TetError> {
     let surface = r.surface;
     let mut points = surface.points.clone();
-    match sized::sized_points(r) {
+    match sized::sized_points(r)? {
         Some(inside) => points.extend(inside),
-        None => points.extend(interior_points(surface, &for_volume(surface, r.interior, r.refinement), r.watch)?),
+        None => points.extend(interior_points(r, &for_volume(surface, r.interior, r.refinement))?),
     }
     // A smaller box has a smaller roundoff bound. Smooth walls still leave space for flips.
     let tight = matches!(r.interior, Interior::Graded { .. } | Interior::Local { .. });
@@ -149,7 +146,7 @@ fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refine
     match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
         (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
             // A cube holds twelve tetrahedra.
-            let cell = (12.0 * VOLUME_SHARE * bound).cbrt().min(usual);
+            let cell = (12.0 * sized::VOLUME_SHARE * bound).cbrt().min(usual);
             let near = CLEARANCE / CELL * cell.max(0.5 * usual);
             Interior::Lattice { cell: Some(cell), clearance: Some(clearance.unwrap_or(near)) }
         }
@@ -157,13 +154,17 @@ fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refine
     }
 }
 
-fn interior_points(surface: &TriMesh, interior: &Interior, watch: &Watch) -> Result<Vec<Point3>, TetError> {
+fn interior_points(r: &Request, interior: &Interior) -> Result<Vec<Point3>, TetError> {
+    let (surface, watch) = (r.surface, r.watch);
     match interior {
-        Interior::None => Ok(Vec::new()),
+        Interior::None | Interior::Growing { .. } => Ok(Vec::new()),
         Interior::Lattice { cell, clearance } | Interior::Graded { cell, clearance } => {
             let h = surface.mean_edge();
             let (cell, clearance) = (cell.unwrap_or(CELL * h), clearance.unwrap_or(CLEARANCE * h));
             let graded = matches!(interior, Interior::Graded { .. });
+            if !graded {
+                sized::check_uniform(r, cell)?;
+            }
             let points = if graded { lattice::graded_lattice_points } else { lattice::lattice_points };
             Ok(points(surface, cell, clearance, watch)?)
         }

@@ -6,7 +6,7 @@ use super::plc::InputPart;
 use anastomesh_mesh::Bound;
 use anastomesh_mesh::budget::{OverBudget, Stop};
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::units::counted;
+use anastomesh_mesh::units::{counted, grouped};
 
 /// Part of the surface that another part intersects. Ids are those of the surface's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -327,6 +327,22 @@ pub enum TetError {
         /// Its value.
         value: f64,
     },
+    /// A growth of [`Interior::Growing`](crate::Interior::Growing) that is not finite or too small.
+    #[error("the growth {value} is not a finite number of at least {least}")]
+    BadGrowth {
+        /// The growth.
+        value: f64,
+        /// Minimum growth.
+        least: f64,
+    },
+    /// The mesh would have more tetrahedra than allowed.
+    #[error("the mesh would have about {} tetrahedra, more than the limit of {}", grouped(*estimate), grouped(*limit))]
+    TooMany {
+        /// Expected number of tetrahedra, or a lower bound.
+        estimate: usize,
+        /// Maximum number of tetrahedra.
+        limit: usize,
+    },
     /// The parameters of layers are invalid.
     #[error(transparent)]
     Layers(#[from] LayersError),
@@ -407,9 +423,9 @@ pub enum TetError {
 }
 
 impl TetError {
-    /// True if the run was cancelled or exceeded its budget, so that no other attempt helps.
+    /// True if the run was cancelled or exceeded a limit, so that no other attempt helps.
     pub(super) fn is_stop(&self) -> bool {
-        matches!(self, Self::Cancelled | Self::OverBudget { .. })
+        matches!(self, Self::Cancelled | Self::OverBudget { .. } | Self::TooMany { .. })
     }
 }
 

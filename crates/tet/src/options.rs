@@ -30,8 +30,31 @@ pub enum Interior {
         /// Minimum distance from the wall.
         clearance: f64,
     },
+    /// Body-centred lattice on a graded octree. Its spacing follows the edges of the surface and of interior facets, and
+    /// grows away from them.
+    Growing {
+        /// Maximum ratio of edge lengths in adjacent layers of tetrahedra.
+        growth: f64,
+    },
     /// These points; those outside the surface are dropped.
     Points(Vec<Point3>),
+}
+
+impl Interior {
+    /// Default growth of [`Interior::Growing`]: about as many tetrahedra as TetGen with `-pYq1.4`.
+    pub const GROWTH: f64 = 1.7;
+
+    /// Minimum growth of [`Interior::Growing`]. Less fills the interior with the finest size.
+    pub const LEAST_GROWTH: f64 = 1.1;
+
+    /// Lattice whose spacing is uniform: 1.4 mean edge lengths of the surface.
+    pub const UNIFORM: Self = Self::Lattice { cell: None, clearance: None };
+}
+
+impl Default for Interior {
+    fn default() -> Self {
+        Self::Growing { growth: Self::GROWTH }
+    }
 }
 
 /// Edge length, in the unit of the surface.

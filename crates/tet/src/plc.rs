@@ -88,19 +88,31 @@ pub struct Region {
     pub seed: Point3,
     /// Id that its tetrahedra get.
     pub id: i32,
-    /// Maximum volume of its tetrahedra, if the mesh is refined.
+    /// Maximum volume of its tetrahedra.
     pub max_volume: Option<f64>,
+    /// Edge length in the region, if shorter than elsewhere.
+    pub size: Option<f64>,
+    /// Maximum ratio of edge lengths in adjacent layers, if less than that of [`Interior::Growing`](crate::Interior::Growing)
+    /// elsewhere.
+    pub growth: Option<f64>,
 }
 
 impl Region {
-    /// Region around a point, without a bound on volumes.
+    /// Region around a point, without bounds of its own.
     pub fn new(seed: Point3, id: i32) -> Self {
-        Self { seed, id, max_volume: None }
+        Self { seed, id, max_volume: None, size: None, growth: None }
+    }
+
+    /// True if the region has bounds of its own.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.max_volume.is_some() || self.size.is_some() || self.growth.is_some()
     }
 }
 
 anastomesh_mesh::setters!(Region {
     max_volume: impl Into<Option<f64>>,
+    size: impl Into<Option<f64>>,
+    growth: impl Into<Option<f64>>,
 });
 
 impl From<&TriMesh> for Plc {

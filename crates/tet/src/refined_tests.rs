@@ -27,7 +27,8 @@ fn a_function_of_the_place_sizes_the_inside() {
     let s = sphere_surface(3);
     let size = |p: &Point3| if p.coords.norm() < 0.4 { 0.05 } else { 1.0 };
     let t = Tetrahedralizer::new().sizing(Sizing::Function(Arc::new(size))).run(&Plc::from(&s)).unwrap();
-    assert!(longest_near(&t.mesh, |p| p.coords.norm() < 0.35) < 0.12);
+    let longest = longest_near(&t.mesh, |p| p.coords.norm() < 0.35);
+    assert!(longest < 0.12, "{longest}");
     let even = Tetrahedralizer::new().run(&Plc::from(&s)).unwrap();
     assert!(t.mesh.tets.len() > 2 * even.mesh.tets.len());
     assert_eq!(t.faces, s.triangles);
@@ -139,4 +140,72 @@ fn bounds_on_shape_leave_fewer_beyond_them() {
     );
     let angled = run(Some(Refinement::default().min_dihedral(15.0)));
     assert!(TetQuality::of(&angled).dihedral_min > 15.0 && TetQuality::of(&plain).dihedral_min < 15.0);
+}
+
+/// A fine sphere of radius 1 in a box of twelve triangles with sides of length `side`.
+fn sphere_in_box(level: usize, side: f64) -> Plc {
+    let sphere = sphere_surface(level);
+    let mut surface = cube_surface(side);
+    let first = surface.points.len() as u32;
+    surface.points.extend(&sphere.points);
+    surface.triangles.extend(sphere.triangles.iter().map(|t| t.map(|v| v + first)));
+    Plc::from(surface)
+}
+
+fn cube_surface(side: f64) -> TriMesh {
+    let corner = |i: usize| Point3::new((i & 1) as f64, ((i >> 1) & 1) as f64, (i >> 2) as f64);
+    let points = (0..8).map(|i| Point3::from((corner(i).coords.add_scalar(-0.5)) * side)).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    TriMesh { points, triangles: sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect() }
+}
+
+#[test]
+fn a_fine_part_in_a_coarse_box_does_not_fill_the_box() {
+    let plc = sphere_in_box(4, 20.0);
+    let run = |t: Tetrahedralizer| t.kind(InputKind::Plc).run(&plc);
+    let made = run(Tetrahedralizer::new()).unwrap();
+    let triangles = plc.surface.triangles.len();
+    // A uniform lattice would have 12 million.
+    assert!(made.mesh.tets.len() < 12 * triangles, "{} {triangles}", made.mesh.tets.len());
+    assert_eq!(made.summary.regions, 2);
+    let q = TetQuality::of(&made.mesh);
+    assert!(q.mean > 0.75 && q.percentile_1 > 0.4, "{q:?}");
+    let slower = run(Tetrahedralizer::new().interior(Interior::Growing { growth: 1.3 })).unwrap();
+    assert!(slower.mesh.tets.len() > made.mesh.tets.len() * 3 / 2, "{}", slower.mesh.tets.len());
+    let uniform = run(Tetrahedralizer::new().interior(Interior::UNIFORM).max_tets(1_000_000));
+    assert!(matches!(uniform, Err(TetError::TooMany { estimate, .. }) if estimate > 5_000_000), "{uniform:?}");
+}
+
+#[test]
+fn a_limit_on_tetrahedra_refuses_before_the_work_and_in_the_refinement() {
+    let s = sphere_surface(3);
+    let tetrahedralizer = Tetrahedralizer::new().max_tets(20_000);
+    assert!(tetrahedralizer.run(&s).unwrap().mesh.tets.len() < 20_000);
+    let fine = tetrahedralizer.clone().sizing(Sizing::Constant(0.01)).run(&s).unwrap_err();
+    assert!(matches!(fine, TetError::TooMany { estimate, limit: 20_000 } if estimate > 10_000_000), "{fine}");
+    let bound = Refinement::default().max_volume(1e-5);
+    let refined = tetrahedralizer.interior(Interior::None).refine(bound).run(&s).unwrap_err();
+    assert!(matches!(refined, TetError::TooMany { .. }), "{refined}");
+}
+
+#[test]
+fn regions_have_sizes_and_growths_of_their_own() {
+    let plc = sphere_in_box(2, 6.0);
+    let inner = |region: Region| {
+        let plc = plc.clone().regions(vec![region]);
+        let made = Tetrahedralizer::new().kind(InputKind::Plc).run(&plc).unwrap();
+        let count = made.regions.iter().filter(|&&id| id == 7).count();
+        (count, made.mesh.tets.len() - count)
+    };
+    let seed = Point3::new(2.0, 2.0, 2.0);
+    let plain = inner(Region::new(seed, 7));
+    let sized = inner(Region::new(seed, 7).size(0.3));
+    let slow = inner(Region::new(seed, 7).growth(1.25));
+    assert!(sized.0 > 3 * plain.0 && sized.1 < 2 * plain.1, "{plain:?} {sized:?}");
+    assert!(slow.0 > plain.0 * 5 / 4 && slow.1 < 2 * plain.1, "{plain:?} {slow:?}");
+    for bad in [Region::new(seed, 7).size(0.0), Region::new(seed, 7).growth(1.0)] {
+        let plc = plc.clone().regions(vec![bad]);
+        let error = Tetrahedralizer::new().kind(InputKind::Plc).run(&plc).unwrap_err();
+        assert!(matches!(error, TetError::BadSize { .. } | TetError::BadGrowth { .. }), "{error}");
+    }
 }

@@ -76,13 +76,14 @@ impl Regions {
         Ok(Self { of, ids, seeds: seed_of })
     }
 
-    /// Volume bound of each slot, from the seeds of the regions.
-    pub(super) fn volume_bounds(&self, seeds: &[Region]) -> Vec<f64> {
-        let bound = |region: u32| {
-            let seed = self.seeds.get(region as usize).copied().flatten();
-            seed.and_then(|s| seeds[s as usize].max_volume).filter(|&b| b > 0.0).unwrap_or(f64::INFINITY)
-        };
-        self.of.iter().map(|&region| bound(region)).collect()
+    /// Seed of each region.
+    pub(super) fn seeds(&self) -> impl Iterator<Item = Option<u32>> {
+        self.seeds.iter().copied()
+    }
+
+    /// Region of each slot.
+    pub(super) fn into_slots(self) -> Vec<u32> {
+        self.of
     }
 
     /// Number of regions.

@@ -29,6 +29,8 @@ pub(super) struct Request<'a> {
     pub effort: Effort,
     /// True if triangles and segments outside are an error.
     pub strict: bool,
+    /// Maximum number of tetrahedra; `None`: any.
+    pub max_tets: Option<usize>,
     /// True if tetrahedra are labelled by region.
     pub label: bool,
     pub watch: &'a Watch<'a>,

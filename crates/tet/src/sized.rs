@@ -3,9 +3,11 @@
 use super::complex::Complex;
 use super::error::{InputArray, TetError};
 use super::options::{Interior, Refinement, Sizing};
+use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
-    Goals, RefineReport, SizeLimit, SizeTree, TreeOptions, graded_points, refine_complex, vertex_sizes,
+    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
+    graded_points, limit_by_gaps, refine_complex,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -15,8 +17,34 @@ use anastomesh_mesh::geometry::Point3;
 /// Clearance of interior points from the wall, relative to the edge length wanted there.
 const CLEARANCE: f64 = 0.45;
 
+/// Clearance of the points of [`Interior::Growing`], relative to the edge length of the wall.
+const GROWING_CLEARANCE: f64 = 0.5;
+
+/// Volume of the lattice's tetrahedra relative to the volume bound.
+pub(super) const VOLUME_SHARE: f64 = 0.6;
+
+/// Tetrahedra per point that refinement adds.
+const TETS_PER_POINT: usize = 6;
+
 /// Fraction of a volume bound that refinement aims at if vertices are moved afterwards.
 const MARGIN: f64 = 0.7;
+
+/// Checks the growth of an interior and the sizes of regions.
+///
+/// # Errors
+/// [`TetError::BadGrowth`], [`TetError::BadSize`].
+pub(super) fn check_growth(interior: &Interior, regions: &[Region]) -> Result<(), TetError> {
+    let general = if let Interior::Growing { growth } = interior { Some(*growth) } else { None };
+    for value in general.into_iter().chain(regions.iter().filter_map(|r| r.growth)) {
+        if !(value >= Interior::LEAST_GROWTH && value.is_finite()) {
+            return Err(TetError::BadGrowth { value, least: Interior::LEAST_GROWTH });
+        }
+    }
+    match regions.iter().filter_map(|r| r.size).find(|&size| !(size > 0.0 && size.is_finite())) {
+        Some(value) => Err(TetError::BadSize { value }),
+        None => Ok(()),
+    }
+}
 
 /// Checks the values of a refinement and a sizing for a surface with `points` points.
 ///
@@ -42,63 +70,148 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
     }
 }
 
-/// Size field of a surface.
-pub(super) fn size_tree(surface: &TriMesh, sizing: &Sizing) -> Option<(SizeTree, Vec<f64>)> {
-    let sizes = vertex_sizes(surface);
-    let function;
-    let limit = match sizing {
-        Sizing::Surface => None,
-        Sizing::Constant(size) => Some(SizeLimit::Constant(*size)),
-        Sizing::PerVertex(sizes) => Some(SizeLimit::PerVertex(sizes)),
-        Sizing::Function(f) => {
-            function = |p: &Point3| f(p);
-            Some(SizeLimit::Function(&function))
-        }
-    };
-    let tree = SizeTree::new(surface, &sizes, limit.as_slice(), &TreeOptions::default())?;
-    Some((tree, sizes))
+/// Options of the size field of an interior with these sizes.
+fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
+    match (interior, sizing) {
+        // Lengths at points are interpolated.
+        (Interior::Growing { .. }, Sizing::PerVertex(_)) => TreeOptions { doubling: None, ..TreeOptions::growing(1.0) },
+        (Interior::Growing { growth }, _) => TreeOptions::growing(*growth),
+        _ => TreeOptions::default(),
+    }
 }
 
-/// Interior points of a run with a given sizing; `None` if interior or sizing exclude them.
-pub(super) fn sized_points(r: &Request) -> Option<Vec<Point3>> {
-    let asked =
-        !matches!(r.sizing, Sizing::Surface) && matches!(r.interior, Interior::Lattice { cell: None, clearance: None });
-    if !asked {
-        return None;
+/// Size field of a surface. `longest` bounds all edge lengths.
+fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeOptions) -> Option<SizeTree> {
+    let function;
+    let mut limits: Vec<SizeLimit> = longest.map(SizeLimit::Constant).into_iter().collect();
+    match sizing {
+        Sizing::Surface => {}
+        Sizing::Constant(size) => limits.push(SizeLimit::Constant(*size)),
+        Sizing::PerVertex(sizes) => limits.push(SizeLimit::PerVertex(sizes)),
+        Sizing::Function(f) => {
+            function = |p: &Point3| f(p);
+            limits.push(SizeLimit::Function(&function));
+        }
     }
-    let (tree, sizes) = size_tree(r.surface, r.sizing)?;
-    Some(graded_points(r.surface, &sizes, &tree, CLEARANCE))
+    SizeTree::new(wall.surface, &wall.sizes, &limits, options)
+}
+
+/// Wall of a run, with sizes as its interior asks.
+fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
+    let growing = matches!(r.interior, Interior::Growing { .. });
+    let mut wall = Wall::new(r.surface, r.kind, if growing { GROWING_CLEARANCE } else { CLEARANCE });
+    if growing {
+        limit_by_gaps(&mut wall);
+    }
+    wall
+}
+
+/// Interior points of a run on a graded lattice; `None` if interior and sizing ask for others.
+///
+/// # Errors
+/// [`TetError::TooMany`], [`TetError::Cancelled`].
+pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError> {
+    let longest = match r.interior {
+        // A cube holds twelve tetrahedra.
+        Interior::Growing { .. } => r
+            .refinement
+            .and_then(|x| x.bounds.max_volume)
+            .map(|v| TreeOptions::edge_of((12.0 * VOLUME_SHARE * v).cbrt())),
+        Interior::Lattice { cell: None, clearance: None } if !matches!(r.sizing, Sizing::Surface) => None,
+        _ => return Ok(None),
+    };
+    let wall = wall(r);
+    let Some(tree) = size_tree(&wall, r.sizing, longest, &tree_options(r.interior, r.sizing)) else {
+        return Ok(None);
+    };
+    if let Some(limit) = r.max_tets {
+        let estimate = estimate_tets(&tree, &wall);
+        within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
+    }
+    Ok(Some(graded_points(&tree, &wall, r.watch)?))
+}
+
+/// Checks the number of tetrahedra of a uniform lattice with cubes of this side.
+///
+/// # Errors
+/// [`TetError::TooMany`].
+pub(super) fn check_uniform(r: &Request, side: f64) -> Result<(), TetError> {
+    let Some(limit) = r.max_tets else { return Ok(()) };
+    within(estimate_uniform(side, &Wall::new(r.surface, r.kind, CLEARANCE)), limit)
+}
+
+fn within(estimate: f64, limit: usize) -> Result<(), TetError> {
+    if estimate <= limit as f64 { Ok(()) } else { Err(TetError::TooMany { estimate: rounded(estimate), limit }) }
+}
+
+/// Rounds an estimate to two digits.
+fn rounded(estimate: f64) -> usize {
+    let unit = 10_f64.powf((estimate.log10().floor() - 1.0).max(0.0));
+    ((estimate / unit).ceil() * unit) as usize
 }
 
 /// Splits tetrahedra that violate the goals of a run; segments must be held.
 ///
 /// # Errors
-/// A seed outside; [`TetError::Cancelled`].
+/// A seed outside; [`TetError::TooMany`]; [`TetError::Cancelled`].
 pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineReport>, TetError> {
     let sized = !matches!(r.sizing, Sizing::Surface);
-    if r.refinement.is_none() && !sized {
+    let bounded = r.regions.iter().any(Region::is_bounded);
+    if r.refinement.is_none() && !sized && !bounded {
         return Ok(None);
     }
     r.watch.report(Stage::Refine, 0, 0)?;
-    let tree = if sized { size_tree(r.surface, r.sizing) } else { None };
-    let size = tree.map(|(tree, _)| move |p: &Point3| tree.size_at(p));
+    let wall = (sized || r.regions.iter().any(|region| region.growth.is_some())).then(|| wall(r));
+    let tree = wall.as_ref().filter(|_| sized);
+    let tree = tree.and_then(|w| size_tree(w, r.sizing, None, &tree_options(r.interior, r.sizing)));
+    let size = tree.map(|tree| move |p: &Point3| tree.size_at(p));
     let mut goals = goals(r.refinement);
     goals.size = size.as_ref().map(|f| f as &dyn Fn(&Point3) -> f64);
-    let bounded = r.regions.iter().any(|region| region.max_volume.is_some());
-    let bounds = if bounded { Regions::of(carved, r.regions)?.volume_bounds(r.regions) } else { Vec::new() };
+    let (mut region_goals, mut of) = (Vec::new(), Vec::new());
+    if bounded {
+        let found = Regions::of(carved, r.regions)?;
+        let region = |seed: Option<u32>| seed.map(|s| &r.regions[s as usize]);
+        region_goals = found.seeds().map(|seed| region_goal(r, wall.as_ref(), region(seed))).collect();
+        of = found.into_slots();
+    }
+    goals.regions = &region_goals;
     if r.optimize {
         // Smoothing enlarges some of them again.
         goals.bounds.max_volume = goals.bounds.max_volume.map(|bound| MARGIN * bound);
     }
-    let report = refine_complex(carved, &goals, bounds, |points| r.watch.report(Stage::Refine, points, 0).is_ok());
+    let free = r.max_tets.map(|limit| limit.saturating_sub(carved.real_tets().count()) / TETS_PER_POINT);
+    let asked = goals.max_points.unwrap_or(usize::MAX);
+    goals.max_points = goals.max_points.or(free).map(|points| points.min(free.unwrap_or(points)));
+    let report = refine_complex(carved, &goals, of, |points| r.watch.report(Stage::Refine, points, 0).is_ok());
     r.watch.report(Stage::Refine, report.points, report.points)?;
-    Ok(Some(report))
+    match (r.max_tets, free) {
+        (Some(limit), Some(free)) if report.limit_reached && free < asked => {
+            Err(TetError::TooMany { estimate: limit.saturating_add(1), limit })
+        }
+        _ => Ok(Some(report)),
+    }
+}
+
+/// Goals of a region with this seed.
+fn region_goal(r: &Request, wall: Option<&Wall>, region: Option<&Region>) -> RegionGoals {
+    let Some(region) = region else { return RegionGoals::default() };
+    let field = wall.zip(region.growth);
+    let field = field.and_then(|(wall, g)| size_tree(wall, r.sizing, region.size, &TreeOptions::growing(g)));
+    let constant = region.size.unwrap_or(f64::INFINITY);
+    RegionGoals {
+        max_volume: region.max_volume.filter(|&b| b > 0.0),
+        size: if field.is_some() || region.size.is_some() {
+            Some(Box::new(move |p: &Point3| field.as_ref().map_or(constant, |tree| tree.size_at(p).min(constant))))
+        } else {
+            None
+        },
+    }
 }
 
 /// Goals of a refinement, without sizes.
 pub(super) fn goals(refinement: Option<&Refinement>) -> Goals<'static> {
     let Some(r) = refinement else { return Goals::default() };
-    Goals { bounds: r.bounds, size: None, max_points: r.max_points }
+    Goals { bounds: r.bounds, size: None, max_points: r.max_points, regions: &[] }
 }
 
 /// Edge length of a regular tetrahedron with this volume.
@@ -112,8 +225,8 @@ pub(super) fn size_function(
     sizing: &Sizing,
     volume: Option<f64>,
 ) -> impl Fn(&Point3) -> f64 + use<> {
-    let tree = size_tree(surface, sizing);
+    let tree = size_tree(&Wall::new(surface, InputKind::Plc, CLEARANCE), sizing, None, &TreeOptions::default());
     let mean = surface.mean_edge();
     let limit = volume.map_or(f64::INFINITY, edge_of_volume);
-    move |p: &Point3| tree.as_ref().map_or(mean, |(tree, _)| tree.size_at(p)).min(limit)
+    move |p: &Point3| tree.as_ref().map_or(mean, |tree| tree.size_at(p)).min(limit)
 }

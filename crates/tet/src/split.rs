@@ -241,7 +241,7 @@ fn to_split(mesh: &TetMesh, pieces: &Pieces, goals: &super::refine::Goals) -> Ve
         let corners = v.map(|x| &mesh.points[x as usize]);
         let on = (0..4).filter_map(|i| triangle.get(&face_key(super::complex::face_of(v, i))));
         let on: Vec<u32> = on.copied().collect();
-        if on.is_empty() || goals.fault(corners, f64::INFINITY).is_none() {
+        if on.is_empty() || goals.fault(corners, None).is_none() {
             continue;
         }
         let shortest = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));

@@ -65,13 +65,17 @@ pub(super) struct Frame {
     pub skeleton: Skeleton,
     /// Original node positions.
     pub origin: Vec<Point3>,
-    /// Adjacency of the skeleton.
+    /// Adjacency of the skeleton, without the nodes inserted since `rejoin`.
     pub adjacency: Adjacency,
+    /// Number of nodes in `adjacency`.
+    chained: usize,
     /// Mobility of each node; 0 if fixed.
     pub mobility: Vec<f64>,
     /// Displacement limit of free nodes, and the paper's unit.
     furthest: f64,
     unit: f64,
+    /// True if only overlapping vessels move.
+    is_held: bool,
     /// Displacement limit of each node.
     pub leash: Vec<f64>,
     /// Nodes of valence 2 at which the vessel reverses: terminals that two trees share.
@@ -106,12 +110,14 @@ impl Frame {
         let chains = AllChains::default();
         let kept = Vec::new();
         let mut frame = Self {
+            chained: skeleton.nodes.len(),
             skeleton,
             origin,
             adjacency,
             mobility,
             furthest,
             unit,
+            is_held: false,
             leash,
             is_fold,
             is_bend,
@@ -126,6 +132,7 @@ impl Frame {
 
     /// Fixes every node except terminals until it is released.
     pub fn hold(&mut self) {
+        self.is_held = true;
         for node in self.skeleton.node_ids().filter(|&n| self.adjacency.valence(n) > 1) {
             self.leash[node.index()] = 0.0;
             self.mobility[node.index()] = 0.0;
@@ -136,8 +143,14 @@ impl Frame {
     pub fn loosen(&mut self, node: NodeId, way: f64) {
         if self.adjacency.valence(node) > 1 {
             self.leash[node.index()] = way.min(self.furthest);
-            self.mobility[node.index()] = readiness(self.skeleton.node(node).radius, self.unit);
+            self.mobility[node.index()] = self.readiness(self.skeleton.node(node).radius);
         }
+    }
+
+    /// Mobility of a released node. If only overlapping vessels move, each moves in proportion to its radius: displacements are
+    /// measured in radii.
+    fn readiness(&self, radius: f64) -> f64 {
+        if self.is_held { radius / self.unit } else { readiness(radius, self.unit) }
     }
 
     fn keep(&self, edge: EdgeId) -> f64 {
@@ -165,11 +178,37 @@ impl Frame {
 
     /// Inserts a node into an edge at parameter `t`, so that the vessel can bend.
     pub fn add_bend(&mut self, edge: EdgeId, t: f64) {
+        self.insert(edge, t);
+        self.mobility.push(readiness(self.skeleton.nodes[self.mobility.len()].radius, self.unit));
+        self.leash.push(self.furthest);
+        self.is_bend.push(true);
+    }
+
+    /// Inserts nodes into an edge at ascending parameters, so that a part of the vessel can move. It is as stiff as before.
+    pub fn divide(&mut self, edge: EdgeId, places: &[f64]) {
+        let ends = self.skeleton.edge(edge).nodes;
+        let [a, b] = ends.map(|n| self.leash[n.index()]);
+        let mut rest = 1.0;
+        // From the end to the start, as the first part keeps its number.
+        for &t in places.iter().rev() {
+            self.insert(edge, t / rest);
+            rest = t;
+            let i = self.leash.len();
+            let (node, home) = (&self.skeleton.nodes[i], self.origin[i]);
+            let moved = (node.position - home).norm();
+            let leash = (a + (b - a) * t).max(moved);
+            self.mobility.push(if leash > 0.0 { self.readiness(node.radius) } else { 0.0 });
+            self.leash.push(leash);
+            self.is_bend.push(false);
+        }
+    }
+
+    fn insert(&mut self, edge: EdgeId, t: f64) {
         let [a, b] = self.skeleton.edge(edge).nodes;
         let tube = self.skeleton.tube(edge);
         let (radius, node) = (tube.radius(t), NodeId(self.skeleton.nodes.len() as u32));
         // Not a terminal, because terminals are identified by this index.
-        let inner = |n: NodeId| self.adjacency.valence(n) > 1;
+        let inner = |n: NodeId| n.index() >= self.chained || self.adjacency.valence(n) > 1;
         let nearer = if (t < 0.5 || !inner(b)) && inner(a) { a } else { b };
         let nearer = self.skeleton.node(nearer).original;
         self.skeleton.nodes.push(Node { position: tube.point(t), radius, original: nearer });
@@ -178,10 +217,7 @@ impl Frame {
         *first = Edge { nodes: [a, node], radii: [first.radii[0], radius] };
         self.skeleton.edges.push(Edge { nodes: [node, b], radii: [radius, old] });
         self.origin.push(self.origin[a.index()] + (self.origin[b.index()] - self.origin[a.index()]) * t);
-        self.mobility.push(readiness(radius, self.unit));
-        self.leash.push(self.furthest);
         self.is_fold.push(false);
-        self.is_bend.push(true);
         self.urgent.push(true);
         self.kept[edge.index()] = self.keep(edge);
         self.kept.push(self.keep(EdgeId(self.kept.len() as u32)));
@@ -190,6 +226,7 @@ impl Frame {
     /// Updates adjacency, folds and chains after nodes were added or moved.
     pub fn rejoin(&mut self) {
         self.adjacency = self.skeleton.adjacency();
+        self.chained = self.skeleton.nodes.len();
         for (fold, now) in self.is_fold.iter_mut().zip(self.skeleton.folds(&self.adjacency)) {
             *fold |= now;
         }

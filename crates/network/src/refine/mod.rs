@@ -18,6 +18,7 @@ mod split;
 #[cfg(test)]
 mod tests;
 mod text;
+mod tighten;
 
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
@@ -26,7 +27,7 @@ pub use leash::FarNode;
 pub use params::{Crowded, Freedom, RefineError, RefineParams, Residual};
 pub use residual::{ResidualPair, ResidualReport, Treatment};
 
-pub use split::{SplitNode, SplitReport, split, split_shared};
+pub use split::{SplitNode, SplitReport, split, split_in_place, split_shared};
 
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
@@ -126,7 +127,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     let leashes = Leashes::of(params.freedom, given);
     let params = &if leashes.is_some() { unlike_grown(params) } else { params.clone() };
     let given_figures = Figures::of(given);
-    let (mut start, splits) = split(given);
+    let (mut start, splits) = if leashes.is_some() { split_in_place(given) } else { split(given) };
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
     let crowded = crowd::treat(&mut start, &mut origin, params, leashes.is_none());
     let split_figures = Figures::of(&start);
@@ -163,6 +164,23 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
         history: moved.history,
     };
     Ok(Refined { skeleton, origin, report })
+}
+
+impl RefineParams {
+    /// True if the refinement lengthens vessels of this network so that they can be cut. Otherwise only overlapping vessels
+    /// move.
+    ///
+    /// ```
+    /// use anastomesh_network::{Freedom, GenerateParams, Organ, RefineParams, generate};
+    ///
+    /// let network = generate(&GenerateParams::new(Organ::Ellipsoid, 20))?;
+    /// assert!(!RefineParams::default().freedom(Freedom::Measured).lengthens(&network));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn lengthens(&self, network: &Skeleton) -> bool {
+        Leashes::of(self.freedom, network).is_none()
+    }
 }
 
 /// Removes `FarPairs` from the protected metrics: consecutive polyline pieces count as far pairs.

@@ -1,6 +1,6 @@
 //! Main loop of the refinement: forces first, then projection until no condition is violated.
 
-use super::bend::add_bends;
+use super::bend::{add_bends, divide_near};
 use super::contact::Contacts;
 use super::figures::Figures;
 use super::forces::{self, Rates};
@@ -9,7 +9,7 @@ use super::history::{Displacement, HistorySample};
 use super::leash::Leashes;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
-use super::{cut_length, shape};
+use super::{cut_length, shape, tighten};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
@@ -55,6 +55,7 @@ pub(super) fn solve(
     progress: &dyn Progress,
 ) -> Result<Moved, RefineError> {
     let mut solver = Solver::new(skeleton, params, leashes);
+    solver.divide();
     let start = solver.sample(0, 0);
     let at = |iteration| progress.at(Stage::Move, iteration as u64, params.iterations as u64);
     at(0);
@@ -94,7 +95,11 @@ pub(super) fn solve(
             break;
         }
     }
-    Ok(Moved { best: best.state, history, unit: solver.unit })
+    let mut best = best.state;
+    if let (Some(_), Some(state)) = (leashes, &mut best) {
+        tighten::tighten(&mut state.skeleton, &state.origin, params.clearance);
+    }
+    Ok(Moved { best, history, unit: solver.unit })
 }
 
 /// Best state so far.
@@ -241,19 +246,38 @@ impl<'a> Solver<'a> {
 
     /// Gives overlapping vessels priority until the next count and adds bends; returns the number of bends.
     fn attend(&mut self, overlaps: &Overlaps) -> usize {
-        self.frame.urgent.fill(false);
+        let before = std::mem::replace(&mut self.frame.urgent, vec![false; self.frame.origin.len()]);
         for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
             self.frame.urgent[node.index()] = true;
+            // A vessel that overlaps for two counts may bend.
+            self.frame.is_bend[node.index()] |= self.leashes.is_some() && before[node.index()];
         }
-        let bends = if self.params.bends { add_bends(&mut self.frame, overlaps) } else { 0 };
+        let bends = match (self.params.bends, self.leashes) {
+            (false, _) => 0,
+            (true, None) => add_bends(&mut self.frame, overlaps),
+            (true, Some(_)) => divide_near(&mut self.frame, overlaps),
+        };
         self.bends += bends;
         self.frame.rejoin();
         if let Some(leashes) = self.leashes {
-            let close = Leashes::close(&self.frame, overlaps);
+            let again = if bends > 0 { Some(self.frame.skeleton.overlaps(&self.frame.adjacency)) } else { None };
+            let close = Leashes::close(&self.frame, again.as_ref().unwrap_or(overlaps));
             leashes.loosen(&mut self.frame, &close);
         }
         self.restart();
         bends
+    }
+
+    /// Divides the vessels that overlap or almost touch, if all others are fixed.
+    fn divide(&mut self) {
+        if self.leashes.is_none() || !self.params.bends {
+            return;
+        }
+        let overlaps = self.frame.skeleton.overlaps(&self.frame.adjacency);
+        let near = if overlaps.pairs.is_empty() { Leashes::near(&self.frame) } else { overlaps };
+        self.bends += divide_near(&mut self.frame, &near);
+        self.frame.rejoin();
+        self.restart();
     }
 
     /// Releases overlapping vessels if all others are fixed, or vessels that almost touch if none overlap. Returns false if

@@ -7,6 +7,9 @@ use std::sync::Arc;
 
 /// Maximum halvings of the shift if an edge would become too short.
 const HALVINGS: u32 = 8;
+/// Shift of a node, in its radii, if vessels are not to be moved apart. A smaller one gives tubes that are shorter than the
+/// contour resolves.
+const IN_PLACE: f64 = 0.1;
 
 /// Node that was split, with the nodes and edges made of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,33 +39,44 @@ pub struct SplitReport {
 ///
 /// The skeleton must satisfy `Skeleton::check`, as does the result.
 pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
+    split_by(skeleton, 1.0)
+}
+
+/// Splits every node of more than three edges like [`split`], with shifts of at most a tenth of a radius. Vessels keep their
+/// places, and those that leave one node remain close to each other.
+pub fn split_in_place(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
+    split_by(skeleton, IN_PLACE)
+}
+
+/// Splits nodes with shifts of at most `reach` radii.
+fn split_by(skeleton: &Skeleton, reach: f64) -> (Skeleton, SplitReport) {
     let adjacency = skeleton.adjacency();
     let mut out = skeleton.clone();
     let mut report = SplitReport::default();
     for node in skeleton.node_ids().filter(|&n| adjacency.valence(n) > 3) {
-        report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec()));
+        report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec(), reach));
     }
     (out, report)
 }
 
-/// Splits a shared network. Returns the given network if no node has to be split.
+/// Splits a shared network in place. Returns the given network if no node has to be split.
 pub fn split_shared(skeleton: &Arc<Skeleton>) -> (Arc<Skeleton>, SplitReport) {
     let adjacency = skeleton.adjacency();
     if skeleton.node_ids().all(|node| adjacency.valence(node) <= 3) {
         return (Arc::clone(skeleton), SplitReport::default());
     }
     drop(adjacency);
-    let (skeleton, report) = split(skeleton);
+    let (skeleton, report) = split_in_place(skeleton);
     (Arc::new(skeleton), report)
 }
 
-fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>) -> SplitNode {
+fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>, reach: f64) -> SplitNode {
     let radius = skeleton.node(node).radius;
     let mut done = SplitNode { node, made: Vec::new(), shortest_link: f64::INFINITY };
     let mut links = Vec::new();
     let mut current = node;
     while edges.len() > 3 {
-        let (made, link, rest) = split_once(skeleton, current, &edges);
+        let (made, link, rest) = split_once(skeleton, current, &edges, reach);
         done.made.push(made);
         links.push(link);
         current = made;
@@ -76,7 +90,7 @@ fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>) -> 
 }
 
 /// Splits off one new node. Returns it, the edge that leads to it, and the edges moved to it.
-fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId]) -> (NodeId, EdgeId, Vec<EdgeId>) {
+fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId], reach: f64) -> (NodeId, EdgeId, Vec<EdgeId>) {
     let centre = *skeleton.node(node);
     let parent = thickest(skeleton, edges);
     let away = |s: &Skeleton, e: EdgeId| s.node(s.edge(e).other(node)).position - centre.position;
@@ -87,7 +101,7 @@ fn split_once(skeleton: &mut Skeleton, node: NodeId, edges: &[EdgeId]) -> (NodeI
     let rest: Vec<EdgeId> = children.into_iter().filter(|&e| e != kept).collect();
 
     let far = |e: EdgeId| skeleton.node(skeleton.edge(e).other(node)).position;
-    let shift = room(&centre, far(parent), far(kept), &rest.iter().map(|&e| far(e)).collect::<Vec<_>>());
+    let shift = room(&centre, far(parent), far(kept), &rest.iter().map(|&e| far(e)).collect::<Vec<_>>(), reach);
     let radius = murray(skeleton, node, &rest).min(centre.radius);
     let made = NodeId(skeleton.nodes.len() as u32);
     skeleton.nodes.push(Node { position: centre.position - upstream * shift, radius, original: centre.original });
@@ -121,10 +135,10 @@ fn radius_at(skeleton: &Skeleton, edge: EdgeId, node: NodeId) -> f64 {
 }
 
 /// Maximum shift of the old node towards `parent` and of the new node away from it.
-fn room(centre: &Node, parent: Point3, kept: Point3, rest: &[Point3]) -> f64 {
+fn room(centre: &Node, parent: Point3, kept: Point3, rest: &[Point3], reach: f64) -> f64 {
     let toward = parent - centre.position;
     let length = toward.norm();
-    let mut shift = centre.radius.min(0.5 * length);
+    let mut shift = (reach * centre.radius).min(0.5 * length);
     let fits = |shift: f64| {
         let (up, down) = (centre.position + toward * (shift / length), centre.position - toward * (shift / length));
         let long_enough = |from: &Point3, to: &Point3| {

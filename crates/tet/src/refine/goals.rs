@@ -19,6 +19,23 @@ pub struct Goals<'a> {
     pub size: Option<&'a dyn Fn(&Point3) -> f64>,
     /// Maximum points added.
     pub max_points: Option<usize>,
+    /// Further goals in each region.
+    pub regions: &'a [RegionGoals],
+}
+
+/// Goals in a region, in addition to the general ones.
+#[derive(Default)]
+pub struct RegionGoals {
+    /// Maximum volume.
+    pub max_volume: Option<f64>,
+    /// Edge length wanted at a point.
+    pub size: Option<Box<dyn Fn(&Point3) -> f64>>,
+}
+
+impl std::fmt::Debug for RegionGoals {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("RegionGoals").field("max_volume", &self.max_volume).field("size", &self.size.is_some()).finish()
+    }
 }
 
 impl std::fmt::Debug for Goals<'_> {
@@ -27,6 +44,7 @@ impl std::fmt::Debug for Goals<'_> {
             .field("bounds", &self.bounds)
             .field("size", &self.size.is_some())
             .field("max_points", &self.max_points)
+            .field("regions", &self.regions)
             .finish()
     }
 }
@@ -41,8 +59,9 @@ pub struct Fault {
 }
 
 impl Goals<'_> {
-    /// Worst violation of the goals, if any. `bound` limits the volume in the tetrahedron's region.
-    pub fn fault(&self, p: [&Point3; 4], bound: f64) -> Option<Fault> {
+    /// Worst violation of the goals by a tetrahedron of a region, if any.
+    pub fn fault(&self, p: [&Point3; 4], region: Option<u32>) -> Option<Fault> {
+        let region = region.and_then(|r| self.regions.get(r as usize));
         let edges = [p[1] - p[0], p[2] - p[0], p[3] - p[0], p[2] - p[1], p[3] - p[1], p[3] - p[2]].map(|e| e.norm());
         let longest = edges.iter().copied().fold(0.0, f64::max);
         let shortest = edges.iter().copied().fold(f64::INFINITY, f64::min);
@@ -52,14 +71,18 @@ impl Goals<'_> {
                 worst = Some(Fault { excess, spacing });
             }
         };
-        let volume = bound.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
+        let here = region.and_then(|r| r.max_volume).unwrap_or(f64::INFINITY);
+        let volume = here.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
         if volume < f64::INFINITY {
             let own = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])) / 6.0;
             note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt());
         }
-        if let Some(size) = self.size {
+        let here = region.and_then(|r| r.size.as_deref());
+        if self.size.is_some() || here.is_some() {
             let sum: Vec3 = p.iter().map(|x| x.coords).sum();
-            let wanted = size(&Point3::from(sum / 4.0));
+            let middle = Point3::from(sum / 4.0);
+            let wanted =
+                self.size.map_or(f64::INFINITY, |f| f(&middle)).min(here.map_or(f64::INFINITY, |f| f(&middle)));
             if wanted > 0.0 {
                 note(longest / (LONGER * wanted), 0.6 * wanted);
             }

@@ -61,18 +61,18 @@ impl Ord for Task {
     }
 }
 
-/// Refines a carved complex in place. `bounds` are volume bounds of the tetrahedra, by slot; it may be empty. `continues`
-/// is called periodically with the number of points added.
+/// Refines a carved complex in place. `regions` are the regions of the tetrahedra, by slot; it may be empty. `continues` is
+/// called periodically with the number of points added.
 pub fn refine_complex(
     c: &mut Complex,
     goals: &Goals,
-    bounds: Vec<f64>,
+    regions: Vec<u32>,
     mut continues: impl FnMut(usize) -> bool,
 ) -> RefineReport {
     let mut r = Refiner {
         c,
         goals,
-        bounds,
+        regions,
         tasks: BinaryHeap::new(),
         stamp: Vec::new(),
         now: 0,
@@ -111,7 +111,8 @@ pub fn refine_complex(
 struct Refiner<'a, 'g> {
     c: &'a mut Complex,
     goals: &'a Goals<'g>,
-    bounds: Vec<f64>,
+    /// Region of each slot; may be empty.
+    regions: Vec<u32>,
     tasks: BinaryHeap<Task>,
     stamp: Vec<u32>,
     now: u32,
@@ -129,12 +130,12 @@ impl Refiner<'_, '_> {
         self.c.verts(t).map(|v| &self.c.points[v as usize])
     }
 
-    fn bound(&self, t: u32) -> f64 {
-        self.bounds.get(t as usize).copied().unwrap_or(f64::INFINITY)
+    fn region(&self, t: u32) -> Option<u32> {
+        self.regions.get(t as usize).copied()
     }
 
     fn fault(&self, t: u32) -> Option<Fault> {
-        self.goals.fault(self.corners(t), self.bound(t))
+        self.goals.fault(self.corners(t), self.region(t))
     }
 
     fn note(&mut self, t: u32) {
@@ -163,7 +164,7 @@ impl Refiner<'_, '_> {
         if !self.trim(start, &p) || !self.is_worthwhile(&p, spacing) {
             return false;
         }
-        let bound = self.bound(start);
+        let region = self.region(start);
         let v = self.c.add_point(p);
         self.new.clear();
         for k in 0..self.cavity.len() {
@@ -179,9 +180,9 @@ impl Refiner<'_, '_> {
         let done = self.c.replace(&self.cavity, &self.new, &mut created);
         if done {
             for &x in &created {
-                if !self.bounds.is_empty() {
-                    self.bounds.resize(self.c.slots(), f64::INFINITY);
-                    self.bounds[x as usize] = bound;
+                if let Some(region) = region {
+                    self.regions.resize(self.c.slots(), u32::MAX);
+                    self.regions[x as usize] = region;
                 }
                 self.note(x);
             }

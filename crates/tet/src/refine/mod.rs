@@ -1,17 +1,25 @@
 //! Mesh size control: a size field on an octree, interior points on a graded body-centred lattice, and Delaunay
 //! refinement inside a frozen boundary.
 
+mod estimate;
+mod gaps;
 mod goals;
 mod insert;
 mod points;
 mod sizes;
 mod tree;
+mod wall;
 
-pub use goals::Goals;
+pub use estimate::{estimate_tets, estimate_uniform};
+pub use gaps::limit_by_gaps;
+pub use goals::{Goals, RegionGoals};
 pub use insert::{RefineReport, refine_complex};
 pub use points::graded_points;
-pub use sizes::{SizeLimit, vertex_sizes};
+pub use sizes::SizeLimit;
+#[cfg(test)]
+use sizes::vertex_sizes;
 pub use tree::{SizeTree, TreeOptions};
+pub use wall::Wall;
 
 #[cfg(test)]
 mod tests;

@@ -2,9 +2,11 @@
 //! (Labelle, Shewchuk, 'Isosurface stuffing', 2007: the background grid.)
 
 use super::tree::{SizeTree, children};
+use super::wall::Wall;
 use crate::delaunay::hash;
-use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle};
+use crate::progress::{Counter, Watch};
+use anastomesh_mesh::budget::Stop;
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashSet;
 
 /// Jitter of a point, relative to the side of the smallest adjacent cube.
@@ -12,6 +14,9 @@ const JITTER: f64 = 0.02;
 
 /// Maximum points made.
 const MAX_POINTS: usize = 50_000_000;
+
+/// Operations per site, as counted by budgets.
+const OPERATIONS: usize = 20;
 
 /// Lattice position in half sides of the finest cubes, packed, with the level of the finest cube there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,17 +28,18 @@ struct LatticeSite {
     unknown: u8,
 }
 
-/// Points inside the closed `surface` with the spacing of `tree`. They keep at least `clearance` times the local edge
-/// length from the wall; `sizes` are the edge lengths at the surface's vertices. The result is deterministic.
-pub fn graded_points(surface: &TriMesh, sizes: &[f64], tree: &SizeTree, clearance: f64) -> Vec<Point3> {
-    let boxes: Vec<Aabb> =
-        surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
-    let bvh = Bvh::new(&boxes);
-    let wall = SurfaceTree { surface, sizes, bvh: &bvh, clearance };
-    let sites = sites(surface, tree, &boxes, &wall);
+/// Points inside the surface of `wall` with the spacing of `tree`. They keep the clearance of the wall. The result is
+/// deterministic.
+///
+/// # Errors
+/// [`Stop`] if the watch stops it.
+pub fn graded_points(tree: &SizeTree, wall: &Wall, watch: &Watch) -> Result<Vec<Point3>, Stop> {
+    let sites = sites(tree, wall);
     let finest = tree.levels();
     let mut points = Vec::new();
+    let mut counter = Counter::new(watch);
     for group in sites.chunk_by(|x, y| x.key == y.key) {
+        counter.add(OPERATIONS)?;
         let level = finest - usize::from(group[0].coarseness);
         let side = tree.side(level);
         let p = place(tree, group[0].key, side);
@@ -42,7 +48,8 @@ pub fn graded_points(surface: &TriMesh, sizes: &[f64], tree: &SizeTree, clearanc
             points.push(p);
         }
     }
-    points
+    counter.end()?;
+    Ok(points)
 }
 
 /// Jittered position of a site.
@@ -57,9 +64,9 @@ fn place(tree: &SizeTree, key: u64, side: f64) -> Point3 {
 }
 
 /// Sorted corners and centres of all leaves in or near the surface, repeated where several leaves meet.
-fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &SurfaceTree) -> Vec<LatticeSite> {
+fn sites(tree: &SizeTree, wall: &Wall) -> Vec<LatticeSite> {
     let mut touched: FxHashSet<[i32; 3]> = FxHashSet::default();
-    for aabb in boxes {
+    for aabb in (0..wall.surface.triangles.len()).map(|place| wall.bvh.box_at(place)) {
         let (low, high) = (tree.cube_at(&aabb.min, 0), tree.cube_at(&aabb.max, 0));
         for i in low[0]..=high[0] {
             for j in low[1]..=high[1] {
@@ -71,7 +78,7 @@ fn sites(surface: &TriMesh, tree: &SizeTree, boxes: &[Aabb], wall: &SurfaceTree)
         }
     }
     let mut cubes: Vec<([i32; 3], u8)> = touched.iter().map(|&c| (c, 1)).collect();
-    cubes.extend(inner_cubes(surface, tree, wall, &touched).into_iter().map(|c| (c, 0)));
+    cubes.extend(inner_cubes(tree, wall, &touched).into_iter().map(|c| (c, 0)));
     cubes.sort_unstable();
     let mut sites = Vec::new();
     let mut stack = Vec::new();
@@ -111,8 +118,8 @@ fn push_leaf(tree: &SizeTree, level: usize, cube: [i32; 3], unknown: u8, sites: 
 }
 
 /// Coarsest cubes inside that no triangle touches.
-fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &SurfaceTree, touched: &FxHashSet<[i32; 3]>) -> Vec<[i32; 3]> {
-    let high = surface.points.iter().fold(tree.origin, |m, p| m.sup(p));
+fn inner_cubes(tree: &SizeTree, wall: &Wall, touched: &FxHashSet<[i32; 3]>) -> Vec<[i32; 3]> {
+    let high = wall.surface.points.iter().fold(tree.origin, |m, p| m.sup(p));
     let last = tree.cube_at(&high, 0);
     let mut seen: FxHashSet<[i32; 3]> = FxHashSet::default();
     let mut inner = Vec::new();
@@ -150,58 +157,4 @@ fn inner_cubes(surface: &TriMesh, tree: &SizeTree, wall: &SurfaceTree, touched: 
         }
     }
     inner
-}
-
-/// The surface with a bounding volume hierarchy.
-struct SurfaceTree<'a> {
-    surface: &'a TriMesh,
-    sizes: &'a [f64],
-    bvh: &'a Bvh,
-    clearance: f64,
-}
-
-impl SurfaceTree<'_> {
-    /// True if a point lies inside: a vertical ray meets an odd number of triangles. A ray that grazes an edge may give
-    /// a wrong result; carving drops such points.
-    fn holds(&self, p: &Point3) -> bool {
-        let mut top = *p;
-        top.z = f64::INFINITY;
-        let mut odd = false;
-        self.bvh.query(&Aabb { min: *p, max: top }, |t| {
-            let [a, b, c] = self.surface.triangles[t as usize].map(|v| self.surface.points[v as usize] - p);
-            let side = |u: &Vec3, v: &Vec3| u.x * v.y - u.y * v.x;
-            let (w, u, v) = (side(&a, &b), side(&b, &c), side(&c, &a));
-            let hit = (w > 0.0 && u > 0.0 && v > 0.0) || (w < 0.0 && u < 0.0 && v < 0.0);
-            odd ^= hit && (u * a.z + v * b.z + w * c.z) / (u + v + w) > 0.0;
-        });
-        odd
-    }
-
-    /// True if a point is far enough from the wall. `side` is that of its smallest cube.
-    fn is_clear(&self, p: &Point3, side: f64) -> bool {
-        let reach = self.clearance * 2.0 * side;
-        let mut clear = true;
-        self.bvh.query(&Aabb { min: *p, max: *p }.grown(reach), |t| {
-            if clear {
-                let t = self.surface.triangles[t as usize];
-                let corners = t.map(|v| self.surface.points[v as usize]);
-                let (foot, distance) = point_triangle(p, corners.each_ref());
-                clear = distance >= self.clearance * self.size_on(&t, &corners, &foot).min(2.0 * side);
-            }
-        });
-        clear
-    }
-
-    /// Edge length at a point of a triangle, interpolated from its corners.
-    fn size_on(&self, t: &[u32; 3], corners: &[Point3; 3], foot: &Point3) -> f64 {
-        let [h0, h1, h2] = t.map(|v| self.sizes.get(v as usize).copied().unwrap_or(0.0));
-        let [a, b, c] = corners.map(|p| p - foot);
-        let normal = (b - a).cross(&(c - a));
-        let total = normal.norm_squared();
-        if total == 0.0 {
-            return h0.min(h1).min(h2);
-        }
-        let part = |u: &Vec3, v: &Vec3| (u.cross(v).dot(&normal) / total).clamp(0.0, 1.0);
-        part(&b, &c) * h0 + part(&c, &a) * h1 + part(&a, &b) * h2
-    }
 }

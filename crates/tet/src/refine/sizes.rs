@@ -35,6 +35,16 @@ impl std::fmt::Debug for SizeLimit<'_> {
     }
 }
 
+impl SizeLimit<'_> {
+    /// Value of a constant bound.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(size) => Some(*size),
+            Self::PerVertex(_) | Self::Function(_) => None,
+        }
+    }
+}
+
 /// Edge length wanted at each vertex of a surface: the mean length of its edges, or less if one of them is much shorter.
 /// Vertices without edges get 0.
 pub fn vertex_sizes(surface: &TriMesh) -> Vec<f64> {

@@ -1,4 +1,6 @@
 use super::*;
+use crate::plc::InputKind;
+use crate::progress::Watch;
 use anastomesh_mesh::Bounds;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
@@ -23,7 +25,7 @@ fn an_even_surface_has_an_even_field_of_its_size() {
     let h = s.mean_edge();
     assert!(tree.is_uniform());
     assert!((tree.size_at(&Point3::origin()) / h - 1.0).abs() < 1e-12);
-    let points = graded_points(&s, &sizes, &tree, 0.4);
+    let points = graded_points(&tree, &Wall::new(&s, InputKind::Closed, 0.4), &Watch::NOBODY).unwrap();
     let volume_per_point = 4.0 / 3.0 * std::f64::consts::PI / points.len() as f64;
     assert!(points.iter().all(|p| p.coords.norm() < 1.0 - 0.3 * h));
     assert!((1.0..3.0).contains(&(volume_per_point / (tree.side(0).powi(3) / 2.0))), "{}", points.len());
@@ -33,11 +35,11 @@ fn an_even_surface_has_an_even_field_of_its_size() {
 fn sizes_follow_the_surface_and_neighbours_differ_little() {
     let s = drawn_sphere(4);
     let sizes = vertex_sizes(&s);
-    let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions { coarsen: true, ..TreeOptions::default() }).unwrap();
+    let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions { doubling: Some(1.0), ..TreeOptions::default() }).unwrap();
     assert!(!tree.is_uniform());
     assert!(tree.size_at(&Point3::new(0.0, 0.0, 1.0)) < 0.5 * tree.size_at(&Point3::new(0.0, 0.0, -0.5)));
     for (p, h) in s.points.iter().zip(&sizes) {
-        assert!(tree.size_at(p) <= 1.87 / 1.4 * h * 1.000_001);
+        assert!(tree.size_at(p) <= 2.83 / 1.4 * h * 1.000_001);
     }
     // Along a line, sizes change by at most a factor of about 2.
     let at = |i: i32| tree.size_at(&Point3::new(0.01, 0.02, f64::from(i) * 1e-3));
@@ -62,13 +64,80 @@ fn limits_are_obeyed_together() {
     assert!(s.points.iter().all(|p| tree.size_at(p) <= 0.05 * 1.87 / 1.4));
 }
 
+/// A closed surface of two spheres, one inside the other.
+fn nested(inner: f64) -> TriMesh {
+    let mut s = sphere_surface(3);
+    let count = s.points.len() as u32;
+    let small = sphere_surface(3);
+    s.points.extend(small.points.iter().map(|p| p * inner));
+    s.triangles.extend(small.triangles.iter().map(|t| t.map(|v| v + count)));
+    s
+}
+
+#[test]
+fn sizes_grow_away_from_fine_parts_as_fast_as_asked() {
+    let s = nested(0.02);
+    let sizes = vertex_sizes(&s);
+    let at = |growth: f64, r: f64| {
+        let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions::growing(growth)).unwrap();
+        tree.size_at(&Point3::new(r, 0.01 * r, -0.02 * r))
+    };
+    let h = 0.02 * sphere_surface(3).mean_edge();
+    for growth in [1.1, 1.3, 1.7] {
+        // Sizes double within a number of layers that depends on the growth.
+        let distance = 0.4;
+        let linear = growth * h + distance * (growth - 1.0) / 0.75;
+        let found = at(growth, 0.02 + distance);
+        assert!(found < 2.0 * linear && found > 0.2 * linear, "{growth}: {found} {linear}");
+    }
+    assert!(at(1.1, 0.3) < 0.7 * at(1.7, 0.3));
+}
+
+#[test]
+fn gaps_limit_sizes() {
+    // A shell between two spheres of radii 1 and 0.9.
+    let s = nested(0.9);
+    let mut wall = Wall::new(&s, InputKind::Plc, 0.5);
+    let before = wall.sizes.clone();
+    limit_by_gaps(&mut wall);
+    let h = s.mean_edge();
+    assert!(h > 0.1);
+    assert!(wall.sizes.iter().zip(&before).all(|(after, before)| (0.5..0.9).contains(&(after / before))));
+    let s = sphere_surface(3);
+    let mut wall = Wall::new(&s, InputKind::Closed, 0.5);
+    limit_by_gaps(&mut wall);
+    assert_eq!(wall.sizes, vertex_sizes(&s));
+}
+
+#[test]
+fn estimates_agree_with_meshes() {
+    let surface = sphere_surface(4);
+    let fine = [SizeLimit::Constant(0.05)];
+    let cases: [(f64, &[SizeLimit]); 3] = [(1.7, &[]), (1.2, &[]), (1.7, &fine)];
+    for (growth, limits) in cases {
+        let wall = Wall::new(&surface, InputKind::Closed, 0.5);
+        let tree = SizeTree::new(&surface, &wall.sizes, limits, &TreeOptions::growing(growth)).unwrap();
+        let sizing =
+            limits.first().and_then(SizeLimit::constant).map_or(crate::Sizing::Surface, crate::Sizing::Constant);
+        let interior = crate::Interior::Growing { growth };
+        let made =
+            crate::Tetrahedralizer::new().interior(interior).sizing(sizing).optimize(false).run(&surface).unwrap();
+        let ratio = estimate_tets(&tree, &wall) / made.mesh.tets.len() as f64;
+        assert!((0.6..1.6).contains(&ratio), "{growth}: {ratio}, {} tetrahedra", made.mesh.tets.len());
+    }
+    let wall = Wall::new(&surface, InputKind::Closed, 0.5);
+    let uniform = crate::Tetrahedralizer::new().interior(crate::Interior::UNIFORM).run(&surface).unwrap();
+    let ratio = estimate_uniform(1.4 * surface.mean_edge(), &wall) / uniform.mesh.tets.len() as f64;
+    assert!((0.6..1.6).contains(&ratio), "{ratio}");
+}
+
 #[test]
 fn the_same_surface_gives_the_same_points() {
     let s = drawn_sphere(3);
     let sizes = vertex_sizes(&s);
     let run = || {
         let tree = SizeTree::new(&s, &sizes, &[], &TreeOptions::default()).unwrap();
-        graded_points(&s, &sizes, &tree, 0.4)
+        graded_points(&tree, &Wall::new(&s, InputKind::Closed, 0.4), &Watch::NOBODY).unwrap()
     };
     let points = run();
     assert!(points.len() > 100);
@@ -151,15 +220,8 @@ mod insertion {
     #[test]
     fn bounds_of_regions_are_handed_on() {
         let mut c = cube();
-        let bounds: Vec<f64> = (0..c.slots() as u32)
-            .map(|t| {
-                if c.is_real(t) && c.verts(t).iter().all(|&v| c.points[v as usize].x <= 0.5) {
-                    0.002
-                } else {
-                    f64::INFINITY
-                }
-            })
-            .collect();
+        let left = |t: u32| c.is_real(t) && c.verts(t).iter().all(|&v| c.points[v as usize].x <= 0.5);
+        let regions: Vec<u32> = (0..c.slots() as u32).map(|t| u32::from(left(t))).collect();
         // The wall between the halves is frozen, like one between regions.
         let wall: Vec<u32> = c
             .real_tets()
@@ -169,7 +231,8 @@ mod insertion {
         for h in wall {
             c.freeze(h);
         }
-        let report = refine_complex(&mut c, &Goals::default(), bounds, |_| true);
+        let goals = [RegionGoals::default(), RegionGoals { max_volume: Some(0.002), size: None }];
+        let report = refine_complex(&mut c, &Goals { regions: &goals, ..Goals::default() }, regions, |_| true);
         assert!(report.points > 0 && c.points[27..].iter().all(|p| p.x < 0.5));
         c.sanity_check().unwrap();
     }

@@ -5,15 +5,29 @@ use super::sizes::SizeLimit;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashSet;
+use std::f64::consts::TAU;
+use std::ops::Range;
 
-/// Maximum side of a cube, in edge lengths wanted in it.
-const SPLIT_ABOVE: f64 = 1.87;
+/// Maximum side of a cube, relative to the side that gives the mean edge length wanted in it.
+const SPLIT_ABOVE: f64 = 1.414;
 
-/// Maximum split cubes; beyond it the mesh stays coarser.
+/// Maximum side of a cube, relative to the side that gives the shortest edge length wanted in it.
+const SPLIT_ABOVE_LEAST: f64 = 2.0 * SPLIT_ABOVE;
+
+/// As [`SPLIT_ABOVE`], for lengths from a function of the position.
+const SPLIT_ABOVE_FUNCTION: f64 = 1.2;
+
+/// Edge length of a body-centred lattice: sides of its cubes.
+const EDGE: f64 = 1.0 / 1.08;
+
+/// Height of a layer of tetrahedra, in edge lengths.
+const LAYER: f64 = 0.75;
+
+/// Maximum split cubes; some 400 MB.
 const MAX_SPLITS: usize = 4_000_000;
 
 /// Maximum levels below the coarsest.
-const MAX_LEVEL: u32 = 12;
+const MAX_LEVEL: u32 = 20;
 
 /// Upper bound of cube indices at the finest level.
 const MAX_INDEX: f64 = 1_000_000.0;
@@ -21,18 +35,37 @@ const MAX_INDEX: f64 = 1_000_000.0;
 /// Options of a size field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeOptions {
-    /// Cube side relative to the edge length at mean surface edges. Sides are this times the mean, times a power of
-    /// two.
+    /// Side of the cubes, in edge lengths wanted.
     pub cell: f64,
-    /// True if inner cubes may exceed the size asked for by the coarse parts of the surface.
-    pub coarsen: bool,
+    /// Edge length wanted at the surface, in edge lengths of the surface.
+    pub first: f64,
+    /// Distance over which the side of inner cubes doubles, in sides; at least 1. `None`: inner cubes do not exceed the
+    /// size asked for by the coarse parts of the surface.
+    pub doubling: Option<f64>,
 }
 
 impl Default for TreeOptions {
     fn default() -> Self {
-        Self { cell: 1.4, coarsen: false }
+        Self { cell: 1.4, first: 1.0, doubling: None }
     }
 }
+
+impl TreeOptions {
+    /// Edge length of a body-centred lattice with cubes of this side.
+    pub fn edge_of(side: f64) -> f64 {
+        side * EDGE
+    }
+
+    /// Options for a ratio of edge lengths in adjacent layers of tetrahedra. The first layer is longer than the edges
+    /// of the surface by the same ratio.
+    pub fn growing(growth: f64) -> Self {
+        let doubling = LAYER * EDGE / (growth - 1.0).max(0.0);
+        Self { cell: 1.0 / EDGE, first: growth, doubling: Some(doubling.clamp(1.0, MAX_DOUBLING)) }
+    }
+}
+
+/// Maximum distance over which sides double, in sides. Reached at a growth of 1.09.
+const MAX_DOUBLING: f64 = 8.0;
 
 /// Octree of a size field. Levels count from the coarsest cubes. Cube `[i, j, k]` of level `l` has its lowest corner at
 /// `origin + [i, j, k] * side / 2^l`.
@@ -45,13 +78,15 @@ pub struct SizeTree {
     splits: usize,
     /// Edge length wanted, relative to the side of the cube.
     per_side: f64,
+    /// Distance from a split cube within which cubes twice as large are split, in its sides.
+    doubling: f64,
 }
 
 impl SizeTree {
     /// Builds the size field of a surface with edge lengths `sizes` at its vertices and further bounds. Returns `None`
     /// for a surface without extent or with sizes that are not positive.
     pub fn new(surface: &TriMesh, sizes: &[f64], limits: &[SizeLimit], options: &TreeOptions) -> Option<Self> {
-        let mut wanted = sizes.to_vec();
+        let mut wanted: Vec<f64> = sizes.iter().map(|h| options.first * h).collect();
         for limit in limits {
             match limit {
                 SizeLimit::PerVertex(bound) => wanted.iter_mut().zip(*bound).for_each(|(w, b)| *w = w.min(*b)),
@@ -59,16 +94,24 @@ impl SizeTree {
                 SizeLimit::Function(_) => {}
             }
         }
-        let reference = surface.mean_edge();
         let coarsest = coarsest(surface, &wanted);
+        let constant = limits.iter().filter_map(SizeLimit::constant).fold(f64::INFINITY, f64::min);
+        let reference = match options.doubling {
+            // Cubes of exactly this size, where the bound is the smallest length.
+            Some(_) => middle(&wanted)?.min(constant),
+            None => surface.mean_edge(),
+        };
         let usable = reference > 0.0 && coarsest > 0.0 && coarsest.is_finite() && options.cell > 0.0;
         if !usable {
             return None;
         }
         let (low, extent) = bounds(surface);
         let mut side = options.cell * reference;
-        // Coarsest cubes: as large as the coarse parts of the surface allow, or up to the whole if coarsening is on.
-        let limit = if options.coarsen { extent } else { SPLIT_ABOVE / options.cell * options.cell * coarsest };
+        // Coarsest cubes: as large as the coarse parts of the surface or the bound allow.
+        let limit = match options.doubling {
+            Some(_) => extent.min(1.001 * options.cell * constant),
+            None => SPLIT_ABOVE * options.cell * coarsest,
+        };
         while side * 2.0 <= limit && side < extent {
             side *= 2.0;
         }
@@ -83,12 +126,9 @@ impl SizeTree {
             levels += 1;
         }
         let split = vec![FxHashSet::default(); levels as usize];
-        let mut tree = Self { origin: low, side, split, splits: 0, per_side: 1.0 / options.cell };
-        for (p, &h) in surface.points.iter().zip(&wanted) {
-            if h > 0.0 {
-                tree.split_at(p, h);
-            }
-        }
+        let doubling = options.doubling.unwrap_or(1.0);
+        let mut tree = Self { origin: low, side, split, splits: 0, per_side: 1.0 / options.cell, doubling };
+        tree.split_at(surface, &wanted);
         for limit in limits {
             if let SizeLimit::Function(f) = limit {
                 tree.split_by(surface, f);
@@ -101,6 +141,21 @@ impl SizeTree {
     /// Side of the cubes of a level.
     pub fn side(&self, level: usize) -> f64 {
         self.side / (1_u64 << level) as f64
+    }
+
+    /// True if the limit of split cubes left some cubes too large.
+    pub fn is_truncated(&self) -> bool {
+        self.splits >= MAX_SPLITS
+    }
+
+    /// Split cubes of a level, in a deterministic order.
+    pub fn split_cubes(&self, level: usize) -> impl Iterator<Item = [i32; 3]> {
+        self.split[level].iter().copied()
+    }
+
+    /// Number of split cubes of a level.
+    pub fn split_count(&self, level: usize) -> usize {
+        self.split.get(level).map_or(0, FxHashSet::len)
     }
 
     /// Number of levels.
@@ -144,14 +199,45 @@ impl SizeTree {
         fresh
     }
 
-    /// Splits the cubes around a point until they are small enough for edge length `h`.
-    fn split_at(&mut self, p: &Point3, h: f64) {
-        for level in 0..self.levels() {
-            if self.side(level) <= SPLIT_ABOVE * h {
-                return;
+    /// Splits the cubes around the points of a surface until they are small enough for the edge lengths `wanted` there.
+    fn split_at(&mut self, surface: &TriMesh, wanted: &[f64]) {
+        let used = |v: &u32| wanted[*v as usize] > 0.0;
+        let mut list: Vec<u32> = (0..surface.points.len().min(wanted.len()) as u32).filter(used).collect();
+        let mut stack = Vec::new();
+        self.push_groups(surface, 0, &mut list, 0, &mut stack);
+        while let Some((level, range)) = stack.pop() {
+            let group: &mut [u32] = &mut list[range.clone()];
+            let (mut sum, mut least) = (0.0, f64::INFINITY);
+            for &v in group.iter() {
+                let h = wanted[v as usize];
+                sum += h.ln();
+                least = h.min(least);
             }
-            let cube = self.cube_at(p, level);
-            self.insert(level, cube);
+            let size = self.side(level) * self.per_side;
+            let mean = (sum / group.len() as f64).exp();
+            if level < self.levels() && (size > SPLIT_ABOVE * mean || size > SPLIT_ABOVE_LEAST * least) {
+                let cube = self.cube_at(&surface.points[group[0] as usize], level);
+                self.insert(level, cube);
+                self.push_groups(surface, level + 1, group, range.start, &mut stack);
+            }
+        }
+    }
+
+    /// Sorts points by their cubes of a level, and adds a range for each cube to the stack. The list begins at `start`.
+    fn push_groups(
+        &self,
+        surface: &TriMesh,
+        level: usize,
+        list: &mut [u32],
+        start: usize,
+        stack: &mut Vec<(usize, Range<usize>)>,
+    ) {
+        let cube = |v: &u32| self.cube_at(&surface.points[*v as usize], level);
+        list.sort_by_cached_key(cube);
+        let mut at = start;
+        for group in list.chunk_by(|v, w| cube(v) == cube(w)) {
+            stack.push((level, at..at + group.len()));
+            at += group.len();
         }
     }
 
@@ -198,7 +284,7 @@ impl SizeTree {
                 h = h.min(at(x, y, z));
             }
         }
-        let split = h > 0.0 && side > SPLIT_ABOVE * h;
+        let split = h > 0.0 && side * self.per_side > SPLIT_ABOVE_FUNCTION * h;
         if split && !self.is_split(level, cube) && !self.insert(level, cube) {
             return;
         }
@@ -207,14 +293,19 @@ impl SizeTree {
         }
     }
 
-    /// Splits cubes until neighbours, including those across corners, differ by at most one level.
+    /// Splits cubes until sizes grow slowly enough. Neighbours, including those across corners, then differ by at most
+    /// one level.
     fn balance(&mut self) {
+        // The margin excludes cubes that only touch.
+        let reach = self.doubling - 1e-9;
         for level in (1..self.levels()).rev() {
             let cubes: Vec<[i32; 3]> = self.split[level].iter().copied().collect();
-            for [i, j, k] in cubes {
-                for x in [(i - 1) >> 1, (i + 1) >> 1] {
-                    for y in [(j - 1) >> 1, (j + 1) >> 1] {
-                        for z in [(k - 1) >> 1, (k + 1) >> 1] {
+            for cube in cubes {
+                let low = cube.map(|i| ((f64::from(i) - reach) / 2.0).floor() as i32);
+                let high = cube.map(|i| ((f64::from(i) + 1.0 + reach) / 2.0).floor() as i32);
+                for x in low[0]..=high[0] {
+                    for y in low[1]..=high[1] {
+                        for z in low[2]..=high[2] {
                             self.insert(level - 1, [x, y, z]);
                         }
                     }
@@ -254,4 +345,20 @@ fn coarsest(surface: &TriMesh, sizes: &[f64]) -> f64 {
         }
     }
     0.0
+}
+
+/// Edge length in the middle of the octaves of given lengths: the circular mean of their logarithms. Cubes whose sides
+/// are powers of two times this length deviate least from the lengths.
+fn middle(sizes: &[f64]) -> Option<f64> {
+    let (mut x, mut y, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for &h in sizes.iter().filter(|&&h| h > 0.0 && h.is_finite()) {
+        let (sine, cosine) = (TAU * h.log2()).sin_cos();
+        (x, y) = (x + cosine, y + sine);
+        (sum, count) = (sum + h.log2(), count + 1.0);
+    }
+    if count == 0.0 {
+        return None;
+    }
+    let (mean, phase) = (sum / count, y.atan2(x) / TAU);
+    Some((phase + (mean - phase).round()).exp2())
 }

@@ -8,6 +8,8 @@ use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 const SAME_WAY: f64 = 0.707;
 /// Maximum distance of lines with a common axis, in radii.
 const SAME_AXIS: f64 = 0.1;
+/// Maximum distance of lines in one lumen, in radii, that the file assigns to different vessels.
+const SAME_LUMEN: f64 = 0.3;
 /// Search distance upstream of VMTK's end of a vessel for a common axis, in radii.
 const UPSTREAM: f64 = 3.0;
 /// Minimum length of a run that is not a whole line, in radii: every bifurcation begins with a short run.
@@ -93,7 +95,7 @@ impl<'a> KeptLines<'a> {
     }
 
     /// Returns the closest position on a kept line of similar direction. The distance must be below both radii. One
-    /// radius suffices if the file assigns both lines to one vessel. Lines of different vessels never match.
+    /// radius suffices if the file assigns both lines to one vessel. Lines of different vessels match only near their axes.
     fn foot(&mut self, point: &Point3, radius: f64, tangent: &Vec3, of: EdgeId) -> Option<Foot> {
         let Self { skeleton, tree, tangents, groups, state, pieces, looks } = self;
         let group = groups[of.index()];
@@ -106,7 +108,7 @@ impl<'a> KeptLines<'a> {
             *looks += 1;
             let Some(ends) = state[id as usize] else { return };
             let kinship = LineGroup::kinship(group, groups[id as usize]);
-            if kinship == Kinship::Different || tangents[id as usize].dot(tangent).abs() < SAME_WAY {
+            if tangents[id as usize].dot(tangent).abs() < SAME_WAY {
                 return;
             }
             let tube = skeleton.tube(EdgeId(id));
@@ -117,7 +119,8 @@ impl<'a> KeptLines<'a> {
             let foot = Foot { edge: EdgeId(id), t, distance, at_end: at_end && distance > 0.0, piece: 0 };
             let within = match kinship {
                 Kinship::Same => radius.max(tube.radius(t)),
-                _ => radius.min(tube.radius(t)),
+                Kinship::Different => SAME_LUMEN * radius.min(tube.radius(t)),
+                Kinship::Unknown => radius.min(tube.radius(t)),
             };
             if distance < within && best.is_none_or(|b| key(&foot) < key(&b)) {
                 best = Some(foot);
