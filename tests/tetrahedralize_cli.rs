@@ -139,8 +139,8 @@ fn facets_regions_and_markers() {
         assert_code(&check(&out), FINE);
     }
     let made = fill(&open, &folder.path().join("open.ele"), &["--no-refine"]);
-    // Both seeds are in one region, which has no unique id.
-    assert!(made.status.code() != Some(70), "{}", stderr(&made));
+    // Both seeds are in one region, which gets the id of the first.
+    assert!(stderr(&made).contains("region point 1 lies in the region of point 0: ignored"), "{}", stderr(&made));
     let unlabelled = rooms(true).replace("2\n0 0.5 0.5 0.5 7 0.01\n1 1.5 0.5 0.5 -9 0.05\n", "0\n");
     let open = text(&folder, "open.poly", &unlabelled);
     let out = folder.path().join("open.ele");
@@ -283,6 +283,85 @@ fn an_input_is_not_overwritten() {
     assert!(stderr(&refused).contains("a.1.ele"), "{}", stderr(&refused));
     assert_eq!(fs::read(&input).expect("a file"), before);
     assert_eq!(entries(folder.path()), ["a.node"]);
+}
+
+#[test]
+fn named_parts_become_patches_and_choose_the_layers() {
+    let folder = folder();
+    // The last two sides of the cube are the ends.
+    let mut obj: String =
+        cube().points.iter().fold(String::new(), |text, p| text + &format!("v {} {} {}\n", p.x, p.y, p.z));
+    for (i, side) in SIDES.iter().enumerate() {
+        let _ = writeln!(obj, "g {}", ["wall", "wall", "wall", "wall", "foot", "head"][i]);
+        let _ = writeln!(obj, "f {} {} {} {}", side[0] + 1, side[1] + 1, side[2] + 1, side[3] + 1);
+    }
+    let input = text(&folder, "bar.obj", &obj);
+    let out = folder.path().join("out.vtu");
+    let report = &report(&input, &out, &["--layers", "2", "--layers-on", "wall"])["report"];
+    assert_eq!(report["layers"]["tets"], 2 * 3 * 8);
+    assert_eq!((&report["layers"]["shrunk_caps"], &report["layers"]["kept_caps"]), (&2.into(), &0.into()));
+    assert_code(&check(&out), FINE);
+    let mesh = read_mesh(&out).expect("a mesh").volume;
+    assert_eq!(mesh.patches.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["wall", "foot", "head"]);
+    let with = |patch: i32| mesh.boundary_patch.iter().filter(|&&id| id == patch).count();
+    assert_eq!([1, 2, 3].map(with), [8, 2 + 4 * 2 * 2, 2 + 4 * 2 * 2]);
+    assert_says(&fill(&input, &out, &["--layers", "2", "--layers-on", "lid"]), USAGE, &["'lid'", "wall, foot, head"]);
+    let plain = save(&folder, "c.off", &cube());
+    assert_says(&fill(&plain, &out, &["--layers", "2", "--layers-on", "1"]), USAGE, &["has none"]);
+}
+
+#[test]
+fn several_surfaces_are_one_complex_with_regions() {
+    let folder = folder();
+    let outer = save(&folder, "box.stl", &scaled(&cube(), 4.0));
+    let inner = save(&folder, "core.off", &scaled(&cube(), 1.0));
+    let out = folder.path().join("out.msh");
+    let options = ["--region", "0.1,0.2,0.1:id=7", "--region", "3,3,3"];
+    let output = run(
+        "tetrahedralize",
+        &[&outer, &inner],
+        &[&["-o", out.to_str().expect("text"), "--json"][..], &options].concat(),
+    );
+    assert_code(&output, FINE);
+    let regions = json(&output)["report"]["regions"].as_array().expect("a list").clone();
+    assert_eq!(regions.iter().map(|r| r["id"].as_i64()).collect::<Vec<_>>(), [Some(1), Some(7)]);
+    let volume = regions[1]["volume"].as_f64().expect("a number");
+    assert!((volume - 1.0).abs() < 1e-12, "{volume}");
+    let mesh = read_mesh(&out).expect("a mesh").volume;
+    assert_eq!(mesh.patches.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["box", "core"]);
+    assert_code(&check(&out), FINE);
+    let hole = [&["-o", out.to_str().expect("text"), "--json", "--hole", "0.5,0.5,0.4"]].concat();
+    let report = &json(&run("tetrahedralize", &[&outer, &inner], &hole))["report"];
+    assert!((report["mesh"]["volume"].as_f64().expect("a number") - 63.0).abs() < 1e-9);
+    let points = text(&folder, "a.node", "1 3 0 0\n0 0 0 0\n");
+    let mixed = run("tetrahedralize", &[&outer, &points], &["-o", out.to_str().expect("text")]);
+    assert_says(&mixed, USAGE, &["a.node is not a surface"]);
+    assert_says(&fill(&outer, &out, &["--hole", "1,1,1"]), USAGE, &["--plc"]);
+    assert_says(&fill(&outer, &out, &["--region", "1,1"]), USAGE, &["X,Y,Z"]);
+}
+
+/// Cube with a corner at the origin moved by a fourth of its size, scaled.
+fn scaled(cube: &TriMesh, factor: f64) -> TriMesh {
+    let shift = if factor > 1.0 { -1.0 } else { 0.0 };
+    let points = cube.points.iter().map(|p| p.map(|x| x * factor + shift)).collect();
+    TriMesh { points, triangles: cube.triangles.clone() }
+}
+
+#[test]
+fn attributes_of_regions_may_be_real() {
+    let folder = folder();
+    let real = rooms(false).replace("0.5 7 0.01", "0.5 0.25 0.01").replace("0.5 -9 0.05", "0.5 1.5 0.05");
+    let input = text(&folder, "real.poly", &real);
+    let out = folder.path().join("real.1.ele");
+    let made = fill(&input, &out, &["--no-refine"]);
+    assert_code(&made, FINE);
+    assert!(stderr(&made).contains("numbered from 1"), "{}", stderr(&made));
+    let file = fs::read_to_string(&out).expect("a file");
+    let mut last: Vec<&str> =
+        file.lines().skip(1).filter(|l| !l.starts_with('#')).filter_map(|l| l.split(' ').next_back()).collect();
+    last.sort_unstable();
+    last.dedup();
+    assert_eq!(last, ["0.25", "1.5"]);
 }
 
 #[test]

@@ -24,17 +24,22 @@ OURS = {"output", "json", "quiet", "verbose", "progress", "log-format"}
 #: Functions, their verb and keywords, and options of the verb that are found elsewhere in Python.
 FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [
     # Files are written by Mesh.save; estimate and mesh_shard have the rest.
-    (anastomesh.mesh, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
-    (anastomesh.estimate, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
-    (anastomesh.mesh_shard, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "float32", "cells", "compress"}),
+    (anastomesh.mesh, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
+    (anastomesh.estimate, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
+    (anastomesh.mesh_shard, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
     (anastomesh.flow, "flow", options.NetworkFlowOptions, set()),
     (anastomesh.surface, "surface", options.SurfaceOptions, set()),
     (anastomesh.prepare, "prepare", options.PrepareOptions, set()),
     (anastomesh.refine, "refine", options.RefineOptions, set()),
     (anastomesh.dual, "dual", options.NetworkOptions, set()),
     (anastomesh.generate, "generate", options.GenerateOptions, {"terminals"}),
-    # Formats of standard input and output; check_surface is --check-only.
-    (anastomesh.tetrahedralize, "tetrahedralize", options.TetrahedralizeOptions, {"from", "to", "check-only"}),
+    # Formats of standard input and output; check_surface is --check-only; regions and holes are arrays.
+    (
+        anastomesh.tetrahedralize,
+        "tetrahedralize",
+        options.TetrahedralizeOptions,
+        {"from", "to", "check-only", "region", "hole"},
+    ),
     (anastomesh.check, "check", options.CheckOptions, set()),
     (anastomesh.convert, "convert", options.ConvertOptions, set()),
     # The network beside a mesh is handed over like the mesh.
@@ -69,7 +74,7 @@ def test_every_option_has_its_keyword(function: Callable[..., Any], verb: str, t
 
 def test_options_of_files_are_those_of_convert() -> None:
     files = set(keywords(FileOptions)) | set(keywords(CapOptions))
-    assert {"format", "float32", "cells", "compress"} < files < set(keywords(options.ConvertOptions))
+    assert {"format", "prisms", "float32", "cells", "compress"} < files < set(keywords(options.ConvertOptions))
 
 
 def test_check_surface_has_options_of_tetrahedralize() -> None:

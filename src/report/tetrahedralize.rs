@@ -175,6 +175,10 @@ pub struct LayerReport {
     pub thinnest: Option<(u32, f64)>,
     /// Surface points without layers.
     pub without: Vec<u32>,
+    /// Flat parts without layers that have other triangles than the input, with rings of layers.
+    pub shrunk_caps: usize,
+    /// Parts without layers that keep their triangles.
+    pub kept_caps: usize,
 }
 
 impl LayerReport {
@@ -189,11 +193,13 @@ impl LayerReport {
             thin: made.thin,
             thinnest: made.thinnest.map(|(v, share)| (name(v), share)),
             without: made.without.iter().map(|&v| name(v)).collect(),
+            shrunk_caps: made.shrunk_caps,
+            kept_caps: made.kept_caps,
         }
     }
 
     fn text(&self) -> String {
-        let Self { tets, inside: q, thin, thinnest, without } = self;
+        let Self { tets, inside: q, thin, thinnest, without, shrunk_caps, kept_caps } = self;
         let mut out = format!(
             "layers: {}; radius ratio of all others: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
              dihedral angles {:.2}° to {:.2}°\n",
@@ -204,6 +210,14 @@ impl LayerReport {
             q.dihedral_min,
             q.dihedral_max
         );
+        if shrunk_caps + kept_caps > 0 {
+            let _ = writeln!(
+                out,
+                "  layers end in rings on {}, whose other triangles shrank in their plane, and at thickness 0 at {}",
+                counted(*shrunk_caps, "flat part"),
+                counted(*kept_caps, "other part")
+            );
+        }
         if let Some((point, share)) = thinnest {
             let _ = writeln!(
                 out,

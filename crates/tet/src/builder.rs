@@ -81,6 +81,8 @@ pub struct Summary {
     pub refine: Option<RefineReport>,
     /// Number of regions.
     pub regions: usize,
+    /// Seeds without effect, as indices into [`Plc::regions`](crate::Plc::regions), each with the earlier seed in its region.
+    pub ignored_seeds: Vec<[u32; 2]>,
     /// Boundary triangles that were oriented inwards in the input.
     pub reversed: usize,
     /// Input triangles between two tetrahedra.
@@ -302,6 +304,7 @@ impl Tetrahedralizer {
                 optimize: filled.optimize,
                 refine: filled.refine,
                 regions: filled.region_count,
+                ignored_seeds: filled.ignored_seeds,
                 reversed: count(Place::Reversed),
                 interior_faces: count(Place::Inside),
                 left_out: filled.left_out,

@@ -30,7 +30,7 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     let optimize = if r.optimize { Some(improve(r, &mut carved)?) } else { None };
     carve::release_segments(&mut carved, &held);
     r.watch.report(Stage::Certify, 0, 1)?;
-    let (regions, region_count) = if r.label { labels(r, &carved)? } else { (Vec::new(), 0) };
+    let Labels { regions, region_count, ignored_seeds } = if r.label { labels(r, &carved)? } else { Labels::default() };
     let mesh = carved.into_compact_mesh(r.surface.points.len());
     r.watch.ask()?;
     let mut places = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
         certify_left_out(&mesh, r.surface, r.segments, &left_out)?;
     }
     r.watch.report(Stage::Certify, 1, 1)?;
-    Ok(Filled { mesh, places, left_out, regions, region_count, recovery, optimize, refine })
+    Ok(Filled { mesh, places, left_out, regions, region_count, ignored_seeds, recovery, optimize, refine })
 }
 
 /// Carves a complex. Returns the filled part and the parts of the input outside of it.
@@ -55,10 +55,20 @@ fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError
     }
 }
 
-/// Region of each tetrahedron, empty if there is only one unnamed region, and the number of regions.
-fn labels(r: &Request, carved: &Complex) -> Result<(Vec<i32>, usize), TetError> {
+/// Regions of a mesh.
+#[derive(Default)]
+struct Labels {
+    /// Region of each tetrahedron, empty if there is only one unnamed region.
+    regions: Vec<i32>,
+    region_count: usize,
+    /// Seeds in regions with an earlier one, each with that one.
+    ignored_seeds: Vec<[u32; 2]>,
+}
+
+fn labels(r: &Request, carved: &Complex) -> Result<Labels, TetError> {
     let found = Regions::of(carved, r.regions)?;
-    Ok((if found.matter() { found.ids(carved) } else { Vec::new() }, found.len()))
+    let regions = if found.matter() { found.ids(carved) } else { Vec::new() };
+    Ok(Labels { regions, region_count: found.len(), ignored_seeds: found.into_ignored() })
 }
 
 /// Improves the mesh; triangles and held segments stay.

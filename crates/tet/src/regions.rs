@@ -47,6 +47,8 @@ pub(super) struct Regions {
     ids: Vec<i32>,
     /// Seed in each region.
     seeds: Vec<Option<u32>>,
+    /// Seeds in regions with an earlier one, each with that one.
+    ignored: Vec<[u32; 2]>,
 }
 
 impl Regions {
@@ -59,9 +61,13 @@ impl Regions {
         let (of, count) = flood(c);
         let places: Vec<Point3> = seeds.iter().map(|r| r.seed).collect();
         let mut seed_of = vec![None; count];
+        let mut ignored = Vec::new();
         for (index, (t, &position)) in (0..).zip(tets_of_seeds(c, &places).into_iter().zip(&places)) {
             let t = t.ok_or(TetError::BadSeed { seed: SeedKind::Region, index, position })?;
-            seed_of[of[t as usize] as usize].get_or_insert(index);
+            let first = *seed_of[of[t as usize] as usize].get_or_insert(index);
+            if first != index {
+                ignored.push([index, first]);
+            }
         }
         let mut taken: Vec<i32> = seeds.iter().map(|r| r.id).collect();
         taken.sort_unstable();
@@ -73,7 +79,7 @@ impl Regions {
                 None => free.next().unwrap_or(i32::MAX),
             })
             .collect();
-        Ok(Self { of, ids, seeds: seed_of })
+        Ok(Self { of, ids, seeds: seed_of, ignored })
     }
 
     /// Seed of each region.
@@ -84,6 +90,11 @@ impl Regions {
     /// Region of each slot.
     pub(super) fn into_slots(self) -> Vec<u32> {
         self.of
+    }
+
+    /// Seeds in regions with an earlier one, each with that one.
+    pub(super) fn into_ignored(self) -> Vec<[u32; 2]> {
+        self.ignored
     }
 
     /// Number of regions.

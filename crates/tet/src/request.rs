@@ -46,6 +46,8 @@ pub(super) struct Filled {
     /// Region of each tetrahedron, empty for a single unnamed region.
     pub regions: Vec<i32>,
     pub region_count: usize,
+    /// Region seeds in regions with an earlier one, each with that one.
+    pub ignored_seeds: Vec<[u32; 2]>,
     pub recovery: RecoverySummary,
     pub optimize: Option<OptimizeReport>,
     pub refine: Option<RefineReport>,

@@ -1,5 +1,6 @@
 """Options of boundary layers."""
 
+from collections.abc import Sequence
 from typing import Annotated, TypedDict
 
 from ._option import Option
@@ -13,4 +14,13 @@ class LayerOptions(TypedDict, total=False):
     layer_thickness: Annotated[
         float,
         Option("Thickness of all layers as a share of the radius; for general surfaces, of half the local width", 0.12),
+    ]
+
+
+class PartialLayerOptions(TypedDict, total=False):
+    """Boundary layers on parts of a surface"""
+
+    layers_on: Annotated[
+        Sequence[int | str] | None,
+        Option("Markers or names of the parts with layers; they end in rings on flat parts without. All parts if absent", join=","),
     ]

@@ -5,7 +5,7 @@ from .files import CapOptions, FileOptions
 from .filling import ComplexOptions, FillingOptions
 from .flow import FlowOptions
 from .growth import GrowthOptions
-from .layers import LayerOptions
+from .layers import LayerOptions, PartialLayerOptions
 from .models import ModelOptions
 from .picture import FaultOptions, PictureOptions
 from .preparation import PreparationOptions
@@ -91,7 +91,16 @@ class CheckSurfaceOptions(ComplexOptions, ThreadOptions, ConfigOptions, total=Fa
     """Keyword arguments of ``check_surface``."""
 
 
-class TetrahedralizeOptions(FillingOptions, LayerOptions, ComplexOptions, PageOptions, ThreadOptions, ConfigOptions, total=False):
+class TetrahedralizeOptions(
+    FillingOptions,
+    LayerOptions,
+    PartialLayerOptions,
+    ComplexOptions,
+    PageOptions,
+    ThreadOptions,
+    ConfigOptions,
+    total=False,
+):
     """Keyword arguments of ``tetrahedralize``."""
 
 

@@ -1,18 +1,24 @@
 //! Options of the command.
 
 use super::format::{InputFormat, StreamFormat};
+use super::seed;
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
 use crate::cli::numbers::number;
 use crate::cli::page::ReportArgs;
+use anastomesh_mesh::Point3;
+use anastomesh_tet::Region;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Closed surface (.off, .ply, .stl, .obj), facet complex (.poly, .smesh), points (.node), or a folder of arrays of
+    /// Closed surface (.off, .ply, .stl, .obj, .vtp), facet complex (.poly, .smesh), points (.node), or a folder of arrays of
     /// these (.npyd); `-` for standard input
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Further surfaces; all surfaces together are a facet complex, with the file names as markers
+    #[arg(value_name = "IN")]
+    pub others: Vec<PathBuf>,
     /// Output file: .vtu, .pvtu (pieces), .msh (Gmsh 4.1), .mesh (Medit), .ele (TetGen files .node .ele .face .edge
     /// .neigh), .npyd (folder of `NumPy` arrays); `-` for standard output
     #[arg(short, long, value_name = "OUT")]
@@ -41,6 +47,12 @@ pub struct Args {
     /// Treat the input as a facet complex, which may have interior, dangling and non-manifold facets (default for .poly and .smesh)
     #[arg(long)]
     pub plc: bool,
+    /// Point in a region: X,Y,Z, then optionally :id=N, :volume=MAX, :size=LENGTH and :growth=G; repeatable
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true, value_parser = seed::region)]
+    pub region: Vec<Region>,
+    /// Point X,Y,Z in a hole of a facet complex; repeatable
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true, value_parser = seed::point)]
+    pub hole: Vec<Point3>,
     /// Allow splitting of input triangles, as TetGen without -Y
     #[arg(long, conflicts_with = "tetgen")]
     pub split: bool,
@@ -59,6 +71,17 @@ pub struct Args {
     pub tetgen: Option<String>,
     #[command(flatten)]
     pub layers: LayerArgs,
+    /// Markers or names of the parts that get layers, comma-separated (default: all). Layers end in rings on flat parts without
+    /// layers
+    #[arg(
+        long,
+        value_name = "PARTS",
+        value_delimiter = ',',
+        requires = "layers",
+        help_heading = "Layers",
+        allow_hyphen_values = true
+    )]
+    pub layers_on: Vec<String>,
     #[command(flatten)]
     pub report: ReportArgs,
     #[command(flatten)]

@@ -9,8 +9,11 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::stop::NOTHING_KEPT;
 use anastomesh_tet::{InputPart, TetError, parts::Names};
 
-/// Message and exit code of an error; `from` names the input.
-pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
+/// Remedy that does not help after a repair.
+const OR_REPAIR: &str = ", or give --repair";
+
+/// Message and exit code of an error; `from` names the input, which may have been repaired.
+pub fn failure(error: &TetError, from: &str, input: &Input, is_repaired: bool) -> Failure {
     if *error == TetError::Cancelled {
         return Failure::stopped(NOTHING_KEPT);
     }
@@ -19,6 +22,7 @@ pub fn failure(error: &TetError, from: &str, input: &Input) -> Failure {
     message.push_str(&place(error, input));
     message.push_str(&input.numbers.legend(asked.triangles.get(), asked.points.get()));
     if let Some(remedy) = remedy(error) {
+        let remedy = if is_repaired { remedy.trim_end_matches(OR_REPAIR) } else { remedy };
         let _ = write!(message, "; {remedy}");
     }
     Failure { exit: exit(error), message }

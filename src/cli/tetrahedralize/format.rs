@@ -19,6 +19,8 @@ pub enum InputFormat {
     Stl,
     /// Wavefront OBJ
     Obj,
+    /// VTK poly data
+    Vtp,
     /// `TetGen` points
     Node,
     /// `TetGen` facet complex
@@ -55,7 +57,7 @@ impl InputFormat {
         match <Self as clap::ValueEnum>::from_str(&extension, true) {
             Ok(format) => Ok(format),
             Err(_) => Err(Failure::input(format!(
-                "{}: unrecognised surface extension; known: .off, .ply, .stl, .obj, .node, .poly, .smesh, .npyd; give the format \
+                "{}: unrecognised surface extension; known: .off, .ply, .stl, .obj, .vtp, .node, .poly, .smesh, .npyd; give the format \
                  with --from{}",
                 path.display(),
                 hint::instead_of_surface(path)
@@ -75,6 +77,7 @@ impl InputFormat {
             Self::Ply => Some(SurfaceFormat::Ply),
             Self::Stl => Some(SurfaceFormat::Stl),
             Self::Obj => Some(SurfaceFormat::Obj),
+            Self::Vtp => Some(SurfaceFormat::Vtp),
             Self::Node | Self::Poly | Self::Smesh | Self::Npyd => None,
         }
     }

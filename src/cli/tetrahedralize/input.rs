@@ -29,6 +29,10 @@ pub struct Input {
     pub only_points: bool,
     /// True if the file has facet markers.
     pub marked: bool,
+    /// Names of markers, ascending.
+    pub names: Vec<(i32, String)>,
+    /// Attributes of regions in the file, by id, if some are not whole numbers.
+    pub attributes: Vec<(i32, f64)>,
     /// Number of facets; `None` for triangles.
     pub facets: Option<usize>,
     /// Numbers of triangles and points in the file.
@@ -71,10 +75,34 @@ impl Input {
     }
 
     fn of_surface(content: SurfaceContent) -> Self {
-        let SurfaceContent { mesh, first, face_of, corner_of, notes, .. } = content;
+        let SurfaceContent { mesh, first, face_of, corner_of, notes, markers, names, .. } = content;
         let counted = if corner_of.is_empty() { Counted::Faces } else { Counted::Corners };
         let numbers = FileNumbers { counted, first, cut: !face_of.is_empty(), face_of, point_of: corner_of };
-        Self { plc: mesh.into(), numbers, notes: notes.iter().map(ToString::to_string).collect(), ..Self::default() }
+        let marked = !markers.is_empty();
+        let plc = Plc::from(mesh).markers(markers);
+        let notes = notes.iter().map(ToString::to_string).collect();
+        Self { plc, marked, names, numbers, notes, ..Self::default() }
+    }
+
+    /// Markers of the parts with these numbers or names.
+    pub fn markers_of(&self, parts: &[String]) -> Result<Vec<i32>, Failure> {
+        let mut known: Vec<i32> = self.plc.markers.clone();
+        known.sort_unstable();
+        known.dedup();
+        let name =
+            |id: i32| self.names.iter().find(|named| named.0 == id).map_or(id.to_string(), |named| named.1.clone());
+        let find = |part: &String| {
+            let named = self.names.iter().find(|named| named.1 == *part).map(|named| named.0);
+            let marker = named.or_else(|| part.parse().ok()).filter(|id| known.contains(id));
+            marker.ok_or_else(|| match known.as_slice() {
+                [] => Failure::usage("--layers-on needs markers, and the input has none"),
+                known => {
+                    let known: Vec<String> = known.iter().map(|&id| name(id)).collect();
+                    Failure::usage(format!("--layers-on: no part is named '{part}'; parts: {}", known.join(", ")))
+                }
+            })
+        };
+        parts.iter().map(find).collect()
     }
 
     /// Orients the triangles and merges duplicates. Returns the changes as sentences.
@@ -210,7 +238,12 @@ impl Input {
         }
         input.plc.segments.sort_unstable();
         input.plc.segments.dedup();
-        input.plc.regions = regions(&file.regions, plan)?;
+        (input.plc.regions, input.attributes) = regions(&file.regions, plan);
+        if !input.attributes.is_empty() {
+            input
+                .notes
+                .push("region attributes are not whole numbers: regions are numbered from 1 by attribute".into());
+        }
         input.plc.surface.points = file.points;
         input.plc.holes = file.holes;
         input.only_points = input.plc.surface.triangles.is_empty() && input.plc.segments.is_empty();
@@ -226,25 +259,29 @@ enum Source {
     Complex(tetgen::Plc),
 }
 
-/// Reason why a facet complex is invalid. Facets and points are numbered as in the file, regions from 0.
+/// Reason why a facet complex is invalid. Facets and points are numbered as in the file.
 #[derive(Debug, thiserror::Error)]
 enum ComplexError {
     #[error("facet {facet} (facets and points count from {first}) cannot be triangulated: {fault}")]
     Facet { facet: usize, first: u32, fault: facets::FacetError },
-    #[error("region {region} (from 0) has the attribute {attribute}: give an integer")]
-    Attribute { region: usize, attribute: f64 },
 }
 
-fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> Result<Vec<Region>, ComplexError> {
-    let mut regions = Vec::with_capacity(listed.len());
-    for (region, &tetgen::Region { point, attribute, max_volume }) in listed.iter().enumerate() {
-        if attribute.fract() != 0.0 || attribute.abs() > f64::from(i32::MAX) {
-            return Err(ComplexError::Attribute { region, attribute });
-        }
-        let max_volume = max_volume.filter(|_| plan.region_volumes);
-        regions.push(Region::new(point, attribute as i32).max_volume(max_volume));
-    }
-    Ok(regions)
+/// Regions of a file. Attributes that are not whole numbers become ids from 1, in ascending order of the attributes, which
+/// are returned with their ids.
+fn regions(listed: &[tetgen::Region], plan: &TetPlan) -> (Vec<Region>, Vec<(i32, f64)>) {
+    let is_whole = |a: f64| a.fract() == 0.0 && a.abs() <= f64::from(i32::MAX);
+    let mut attributes: Vec<f64> = listed.iter().map(|region| region.attribute).collect();
+    attributes.sort_unstable_by(f64::total_cmp);
+    attributes.dedup();
+    let numbered = if attributes.iter().all(|&a| is_whole(a)) { Vec::new() } else { (1..).zip(attributes).collect() };
+    let id = |attribute: f64| {
+        let found = numbered.iter().find(|(_, a): &&(i32, f64)| *a == attribute);
+        found.map_or(attribute as i32, |(id, _)| *id)
+    };
+    let region = |&tetgen::Region { point, attribute, max_volume }: &tetgen::Region| {
+        Region::new(point, id(attribute)).max_volume(max_volume.filter(|_| plan.region_volumes))
+    };
+    (listed.iter().map(region).collect(), numbered)
 }
 
 /// Replaces duplicate points in polygons by the first of them.

@@ -4,9 +4,11 @@ mod args;
 mod fault;
 mod format;
 mod input;
+mod join;
 mod numbers;
 mod output;
 mod plan;
+mod seed;
 mod switches;
 mod watch;
 
@@ -64,9 +66,14 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = common::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet, args.common.progress));
-    let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
+    let mut input = watch.time("read", || read(args, format, &plan))?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
-    let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
+    let layers_on = input.markers_of(&args.layers_on)?;
+    let from = match args.others.len() {
+        _ if is_stream(&args.input) => "standard input".into(),
+        0 => args.input.display().to_string(),
+        others => format!("{} and {}", args.input.display(), counted(others, "other file")),
+    };
     for note in input.notes.iter().filter(|_| !plan.quiet) {
         log::warning(&format!("{from}: {note}"));
     }
@@ -76,11 +83,15 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let stop = Stop::listen(plan.quiet)?;
     let listener = Listener(Arc::clone(&watch), stop.clone());
-    let made = pool.install(|| make(&plan, &input, listener.clone()));
+    let made = pool.install(|| make(&plan, &input, layers_on, listener.clone()));
     watch.leave();
-    let made = made.map_err(|e| fault::failure(&e, &from, &input))?;
+    let made = made.map_err(|e| fault::failure(&e, &from, &input, plan.repair))?;
     stop.keep();
     if let (Some(made), Some(target)) = (made, target) {
+        for [seed, earlier] in made.summary.ignored_seeds.iter().filter(|_| !plan.quiet) {
+            let [seed, earlier] = [seed, earlier].map(|&index| input.numbers.seed(index));
+            log::warning(&format!("{from}: region point {seed} lies in the region of point {earlier}: ignored"));
+        }
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
         let volume = output::volume(made, &input);
@@ -96,9 +107,38 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(conclude(&common, &report.verdict(plan.check_only)))
 }
 
+/// Reads all files, and adds the points of regions and holes.
+fn read(args: &Args, format: InputFormat, plan: &TetPlan) -> Result<Input, Failure> {
+    let mut input = Input::read(&args.input, format, plan)?;
+    if !args.others.is_empty() {
+        let other = |path: &PathBuf| Input::read(path, InputFormat::of(path, args.from)?, plan);
+        let others = args.others.iter().map(other).collect::<Result<Vec<_>, _>>()?;
+        let parts: Vec<Input> = std::iter::once(input).chain(others).collect();
+        if let Some(part) = parts.iter().find(|part| part.facets.is_some() || part.plc.surface.triangles.is_empty()) {
+            let file = part.files.first().map(|path| path.display().to_string()).unwrap_or_default();
+            return Err(Failure::usage(format!("{file} is not a surface: only surfaces combine with other files")));
+        }
+        input = join::join(parts);
+    }
+    let next = input.plc.regions.iter().map(|region| region.id).max().unwrap_or(0).max(0);
+    let numbered = (next + 1..).zip(&args.region).map(|(id, &region)| {
+        let mut region = region;
+        region.id = if region.id == 0 { id } else { region.id };
+        region
+    });
+    input.plc.regions.extend(numbered);
+    input.plc.holes.extend(&args.hole);
+    Ok(input)
+}
+
 /// Makes the mesh; `None` if the input is only checked.
-fn make(plan: &TetPlan, input: &Input, listener: Listener) -> Result<Option<Tetrahedralization>, TetError> {
-    let tetrahedralizer = plan.tetrahedralizer(&input.plc.regions).progress(listener);
+fn make(
+    plan: &TetPlan,
+    input: &Input,
+    layers_on: Vec<i32>,
+    listener: Listener,
+) -> Result<Option<Tetrahedralization>, TetError> {
+    let tetrahedralizer = plan.tetrahedralizer(&input.plc.regions).layers_on(layers_on).progress(listener);
     if plan.check_only && !input.only_points {
         return tetrahedralizer.check(&input.plc).map(|()| None);
     }

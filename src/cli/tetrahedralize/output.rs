@@ -26,7 +26,12 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     let mut ids = boundary_patch.clone();
     ids.sort_unstable();
     ids.dedup();
-    let name = |id: i32| if marked { format!("marker_{id}") } else { "boundary".into() };
+    let named = |id: i32| input.names.iter().find(|named| named.0 == id).map(|named| named.1.clone());
+    let name = |id: i32| match named(id) {
+        Some(name) if marked => name,
+        _ if marked => format!("marker_{id}"),
+        _ => "boundary".into(),
+    };
     let mut volume = VolumeMesh {
         tet_block: made.regions,
         boundary_block: vec![0; boundary.len()],
@@ -115,7 +120,7 @@ fn family<'a>(volume: &'a VolumeMesh, input: &'a Input, plan: &TetPlan, regions:
         .neighbors(plan.family.neighbors)
         .first_number(plan.family.first.unwrap_or(input.first));
     if regions {
-        family = family.regions(&volume.tet_block);
+        family = family.regions(&volume.tet_block).region_attributes(&input.attributes);
     }
     if !input.point_markers.is_empty() {
         family = family.point_markers(&input.point_markers);

@@ -31,6 +31,9 @@ pub struct TetPlan {
     /// Layers along the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Layers>,
+    /// Parts with layers; empty for all.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub layers_on: Vec<String>,
     /// True if tetrahedra are improved.
     pub optimize: bool,
     /// True if points and improvement are limited to what the shape bound needs.
@@ -93,6 +96,11 @@ impl TetPlan {
         plan.check_only |= args.check_only;
         plan.repair = args.repair;
         plan.strict = args.strict;
+        plan.plc |= !args.others.is_empty();
+        plan.layers_on.clone_from(&args.layers_on);
+        if !plan.plc && !args.hole.is_empty() {
+            return Err(Failure::usage("--hole is for facet complexes: give --plc"));
+        }
         plan.layers = args.layers.asked()?;
         Self::validate(args)?;
         Ok((plan, notes))
@@ -107,6 +115,7 @@ impl TetPlan {
             size: args.size,
             split: args.split,
             layers: None,
+            layers_on: Vec::new(),
             optimize: refine,
             sparse: false,
             repair: false,
@@ -132,6 +141,7 @@ impl TetPlan {
             size: None,
             split: !s.keep_boundary,
             layers: None,
+            layers_on: Vec::new(),
             optimize: refine && !s.no_optimization,
             // A volume bound controls the lattice; an angle bound needs the full lattice and full effort.
             sparse: s.max_volume.is_none() && !s.region_volumes && !s.quality.is_some_and(bounds_angles),

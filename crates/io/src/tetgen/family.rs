@@ -44,6 +44,8 @@ pub struct MeshFamily<'a> {
     point_attributes: (&'a [f64], usize),
     segments: &'a [[u32; 2]],
     regions: Option<&'a [i32]>,
+    /// Attributes of regions by id, ascending; others have their id.
+    region_attributes: &'a [(i32, f64)],
     faces: Extent,
     edges: Extent,
     neighbors: bool,
@@ -66,6 +68,7 @@ impl<'a> MeshFamily<'a> {
             point_attributes: (&[], 0),
             segments: &[],
             regions: None,
+            region_attributes: &[],
             faces: Extent::Boundary,
             edges: Extent::Boundary,
             neighbors: true,
@@ -106,6 +109,13 @@ impl<'a> MeshFamily<'a> {
     #[must_use]
     pub fn regions(mut self, regions: &'a [i32]) -> Self {
         self.regions = Some(regions);
+        self
+    }
+
+    /// Attributes of regions that are not their ids, by id, ascending.
+    #[must_use]
+    pub fn region_attributes(mut self, attributes: &'a [(i32, f64)]) -> Self {
+        self.region_attributes = attributes;
         self
     }
 
@@ -228,7 +238,13 @@ impl<'a> MeshFamily<'a> {
             let [a, b, c, d] = tet.map(|v| self.number(v));
             write!(out, "{} {a} {b} {c} {d}", self.number(i as u32))?;
             match self.regions {
-                Some(regions) => writeln!(out, " {}", regions.get(i).unwrap_or(&0))?,
+                Some(regions) => {
+                    let id = regions.get(i).copied().unwrap_or(0);
+                    match self.region_attributes.binary_search_by_key(&id, |region| region.0) {
+                        Ok(at) => writeln!(out, " {:?}", self.region_attributes[at].1)?,
+                        Err(_) => writeln!(out, " {id}")?,
+                    }
+                }
                 None => writeln!(out)?,
             }
         }
