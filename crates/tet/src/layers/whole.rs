@@ -73,7 +73,11 @@ pub fn layered(r: &Request, layers: &Layers, (markers, on): (&[i32], &[i32])) ->
         made => made?,
     };
     let reached = |v: usize| inset.shares[v] * (about.wanted[v] - surface.points[v]).norm();
-    let mut summary = summary(&wall.asked, reached, inset.of_layers, &wall.triangles);
+    // At a cap that shrinks, the share of its own size is asked for.
+    let of_cap = |(v, p): (usize, Option<Point3>)| p.map(|p| (p - surface.points[v]).norm()).filter(|d| *d > 0.0);
+    let of_caps = shrunk(&surface, &caps, layers.thickness).into_iter().enumerate().map(of_cap);
+    let asked: Vec<f64> = wall.asked.iter().zip(of_caps).map(|(asked, of_cap)| of_cap.unwrap_or(*asked)).collect();
+    let mut summary = summary(&asked, reached, inset.of_layers, &wall.triangles);
     summary.shrunk_caps = caps.iter().filter(|cap| cap.centre.is_some()).count();
     summary.kept_caps = caps.len() - summary.shrunk_caps;
     let regions = regions(&inset.mesh, &plain);
