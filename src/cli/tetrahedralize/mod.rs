@@ -65,6 +65,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = common::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet, args.common.progress));
     let mut input = watch.time("read", || Input::read(&args.input, format, &plan))?;
+    input.limit_regions(&plan)?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
     let from = if is_stream(&args.input) { "standard input".into() } else { args.input.display().to_string() };
     for note in input.notes.iter().filter(|_| !plan.quiet) {
