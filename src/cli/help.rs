@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 44] = [
+const RARE: [&str; 47] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -36,12 +36,15 @@ const RARE: [&str; 44] = [
     "max-displacement",
     "max-lumen-error",
     "max-radius-edge",
+    "max-tets",
     "metrics",
     "plot",
     "progress",
     "radius-array",
     "radius-scale",
     "refined",
+    "region-growth",
+    "region-size",
     "repel-rate",
     "restart",
     "samples",

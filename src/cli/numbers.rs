@@ -16,3 +16,9 @@ pub fn fraction(text: &str) -> Result<f64, String> {
     let value = number(text)?;
     if (0.0..1.0).contains(&value) { Ok(value) } else { Err("expected a number from 0 to below 1".into()) }
 }
+
+/// Parses the number of a region and a value for it, such as `3=0.5`.
+pub fn of_region(text: &str) -> Result<(i32, f64), String> {
+    let parts = text.split_once('=').and_then(|(id, value)| Some((id.trim().parse().ok()?, number(value).ok()?)));
+    parts.ok_or_else(|| "expected the number of a region and a value, as in 3=0.5".into())
+}

@@ -42,7 +42,7 @@ pub enum Interior {
 
 impl Interior {
     /// Default growth of [`Interior::Growing`]: about as many tetrahedra as TetGen with `-pYq1.4`.
-    pub const GROWTH: f64 = 1.7;
+    pub const GROWTH: f64 = 2.0;
 
     /// Minimum growth of [`Interior::Growing`]. Less fills the interior with the finest size.
     pub const LEAST_GROWTH: f64 = 1.1;

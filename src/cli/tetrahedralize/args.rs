@@ -4,10 +4,10 @@ use super::format::{InputFormat, StreamFormat};
 use super::seed;
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
-use crate::cli::numbers::number;
+use crate::cli::numbers::{number, of_region};
 use crate::cli::page::ReportArgs;
 use anastomesh_mesh::Point3;
-use anastomesh_tet::Region;
+use anastomesh_tet::{Interior, Region, Tetrahedralizer};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<StreamFormat>,
     /// Add only points that the surface needs, and do not improve tetrahedra
-    #[arg(long, conflicts_with_all = ["max_radius_edge", "min_dihedral", "max_volume", "size", "tetgen"])]
+    #[arg(long, conflicts_with_all = ["max_radius_edge", "min_dihedral", "max_volume", "size", "growth", "tetgen"])]
     pub no_refine: bool,
     /// Maximum ratio of circumradius to shortest edge, as far as the boundary allows
     #[arg(long, value_name = "RATIO", conflicts_with = "tetgen", allow_negative_numbers = true, value_parser = number)]
@@ -41,13 +41,28 @@ pub struct Args {
     /// Maximum volume of a tetrahedron; exit code 1 if violated
     #[arg(long, value_name = "VOLUME", conflicts_with = "tetgen", allow_negative_numbers = true, value_parser = number)]
     pub max_volume: Option<f64>,
-    /// Edge length in the interior (default: edge length of the nearby surface)
+    /// Maximum edge length in the interior (default: any that the growth gives)
     #[arg(long, value_name = "LENGTH", conflicts_with = "tetgen", allow_negative_numbers = true, value_parser = number)]
     pub size: Option<f64>,
+    /// Growth of edge lengths per layer of tetrahedra, away from the surface and from facets; at least 1.1
+    #[arg(long, value_name = "FACTOR", default_value_t = Interior::GROWTH, value_parser = number)]
+    pub growth: f64,
+    /// Fill the interior evenly with the mean edge length of the surface, instead of growing tetrahedra
+    #[arg(long, conflicts_with_all = ["growth", "no_refine", "tetgen"])]
+    pub uniform: bool,
+    /// Maximum edge length in the region with this number; repeat for further regions
+    #[arg(long, value_name = "REGION=LENGTH", value_parser = of_region, conflicts_with = "no_refine")]
+    pub region_size: Vec<(i32, f64)>,
+    /// Growth in the region with this number, below that of --growth; repeat for further regions
+    #[arg(long, value_name = "REGION=FACTOR", value_parser = of_region, conflicts_with = "no_refine")]
+    pub region_growth: Vec<(i32, f64)>,
+    /// Refuse meshes that would have more tetrahedra
+    #[arg(long, value_name = "N", default_value_t = Tetrahedralizer::MAX_TETS)]
+    pub max_tets: usize,
     /// Treat the input as a facet complex, which may have interior, dangling and non-manifold facets (default for .poly and .smesh)
     #[arg(long)]
     pub plc: bool,
-    /// Point in a region: X,Y,Z, then optionally :id=N, :volume=MAX, :size=LENGTH and :growth=G; repeatable
+    /// Point in a region: X,Y,Z, then optionally :id=N and :volume=MAX; repeatable
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, value_parser = seed::region)]
     pub region: Vec<Region>,
     /// Point X,Y,Z in a hole of a facet complex; repeatable

@@ -73,9 +73,11 @@ fn place(error: &TetError, input: &Input) -> String {
 /// Exit code of an error.
 fn exit(error: &TetError) -> Exit {
     match error {
-        TetError::BadSize { .. } | TetError::BadBound { .. } | TetError::Layers(_) | TetError::LayersAlong(_) => {
-            Exit::Usage
-        }
+        TetError::BadSize { .. }
+        | TetError::BadGrowth { .. }
+        | TetError::BadBound { .. }
+        | TetError::Layers(_)
+        | TetError::LayersAlong(_) => Exit::Usage,
         TetError::NotRecovered { .. } | TetError::NotCertified(_) | TetError::Broken(_) | TetError::TooLarge { .. } => {
             Exit::StageFailed
         }
@@ -103,6 +105,9 @@ fn remedy(error: &TetError) -> Option<&'static str> {
         TetError::NotSeparating { .. } => "orient the shells, or give --repair",
         TetError::NotRecovered { .. } => {
             "the surface passed all checks: give --split to allow splitting, and please report it"
+        }
+        TetError::TooMany { .. } => {
+            "give a larger --size, --max-volume or --growth, or raise --max-tets (100 to 200 bytes each)"
         }
         TetError::NotCertified(_) | TetError::Broken(_) => {
             "internal error: please report it with the input and the options"

@@ -133,6 +133,25 @@ impl Input {
         said(&report)
     }
 
+    /// Gives regions their sizes and growths.
+    pub fn limit_regions(&mut self, plan: &TetPlan) -> Result<(), Failure> {
+        let missing =
+            |flag: &str, id: i32| Failure::usage(format!("{flag}: no region of the input has the number {id}"));
+        for &(id, size) in &plan.region_sizes {
+            self.regions_of(id).ok_or_else(|| missing("--region-size", id))?.for_each(|r| r.size = Some(size));
+        }
+        for &(id, growth) in &plan.region_growths {
+            self.regions_of(id).ok_or_else(|| missing("--region-growth", id))?.for_each(|r| r.growth = Some(growth));
+        }
+        Ok(())
+    }
+
+    /// Regions with a number, if any.
+    fn regions_of(&mut self, id: i32) -> Option<impl Iterator<Item = &mut Region>> {
+        let mut found = self.plc.regions.iter_mut().filter(move |r| r.id == id).peekable();
+        found.peek().is_some().then_some(found)
+    }
+
     /// Removes segments that the mesh does not have; `ids` are ascending.
     pub fn leave_out(&mut self, ids: &[u32]) {
         let mut ids = ids.iter().peekable();

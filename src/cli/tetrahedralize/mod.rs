@@ -67,6 +67,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = common::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet, args.common.progress));
     let mut input = watch.time("read", || read(args, format, &plan))?;
+    input.limit_regions(&plan)?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
     let layers_on = input.markers_of(&args.layers_on)?;
     let from = match args.others.len() {

@@ -11,9 +11,6 @@ use serde::Serialize;
 /// Side of the lattice cubes in edge lengths, so that a body-centred lattice has edges of about that length.
 const LATTICE_CELL: f64 = 1.08;
 
-/// Lattice of a run with TetGen switches, in edge lengths of the nearby surface. It gives about as many tetrahedra as TetGen.
-const SPARSE: Interior = Interior::Local { cell: 2.0, clearance: 0.45 };
-
 /// Resolved options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TetPlan {
@@ -24,8 +21,18 @@ pub struct TetPlan {
     /// Bounds on the tetrahedra.
     #[serde(flatten)]
     pub bounds: Bounds,
-    /// Uniform edge length; `None`: that of the nearby surface.
+    /// Maximum edge length; `None`: any that the growth gives.
     pub size: Option<f64>,
+    /// Growth of edge lengths per layer of tetrahedra; `None`: they are uniform.
+    pub growth: Option<f64>,
+    /// Maximum edge length in regions, by number.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub region_sizes: Vec<(i32, f64)>,
+    /// Growth in regions, by number.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub region_growths: Vec<(i32, f64)>,
+    /// Maximum number of tetrahedra.
+    pub max_tets: usize,
     /// True if input triangles may be split.
     pub split: bool,
     /// Layers along the surface.
@@ -36,8 +43,8 @@ pub struct TetPlan {
     pub layers_on: Vec<String>,
     /// True if tetrahedra are improved.
     pub optimize: bool,
-    /// True if points and improvement are limited to what the shape bound needs.
-    pub sparse: bool,
+    /// True if the improvement is quick.
+    pub quick: bool,
     /// True if the input is repaired: oriented, and exact duplicates merged.
     pub repair: bool,
     /// True if ignored input is an error.
@@ -102,6 +109,10 @@ impl TetPlan {
             return Err(Failure::usage("--hole is for facet complexes: give --plc"));
         }
         plan.layers = args.layers.asked()?;
+        plan.region_sizes.clone_from(&args.region_size);
+        plan.region_growths.clone_from(&args.region_growth);
+        plan.max_tets = args.max_tets;
+        plan.growth = Some(args.growth).filter(|_| !args.uniform);
         Self::validate(args)?;
         Ok((plan, notes))
     }
@@ -113,11 +124,15 @@ impl TetPlan {
             refine,
             bounds: bounds_of(args),
             size: args.size,
+            growth: None,
+            region_sizes: Vec::new(),
+            region_growths: Vec::new(),
+            max_tets: Tetrahedralizer::MAX_TETS,
             split: args.split,
             layers: None,
             layers_on: Vec::new(),
             optimize: refine,
-            sparse: false,
+            quick: false,
             repair: false,
             strict: false,
             regions: true,
@@ -139,12 +154,16 @@ impl TetPlan {
             refine,
             bounds: Bounds { max_volume: s.max_volume, ..s.quality.unwrap_or_default() },
             size: None,
+            growth: None,
+            region_sizes: Vec::new(),
+            region_growths: Vec::new(),
+            max_tets: Tetrahedralizer::MAX_TETS,
             split: !s.keep_boundary,
             layers: None,
             layers_on: Vec::new(),
             optimize: refine && !s.no_optimization,
-            // A volume bound controls the lattice; an angle bound needs the full lattice and full effort.
-            sparse: s.max_volume.is_none() && !s.region_volumes && !s.quality.is_some_and(bounds_angles),
+            // As fast as TetGen, unless angles are bounded.
+            quick: !s.quality.is_some_and(bounds_angles),
             repair: false,
             strict: false,
             regions: s.regions,
@@ -163,33 +182,52 @@ impl TetPlan {
                 flag(bound)
             ))),
             Some((bound, value)) => Err(not_positive(&flag(bound), value)),
-            None => match args.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
-                Some(size) => Err(not_positive("--size", size)),
-                None => Ok(()),
-            },
+            None => validate_sizes(args),
         }
     }
 
     /// Tetrahedralizer for an input with these regions.
     pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
         let refinement = Refinement::default().bounds(self.bounds);
-        let lattice = if self.sparse {
-            SPARSE
-        } else {
-            Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None }
+        let interior = match self.growth {
+            _ if !self.refine => Interior::None,
+            Some(growth) => Interior::Growing { growth },
+            None => Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None },
         };
+        // A size of a uniform lattice needs no further field.
+        let sized = self.growth.is_some() || self.split || self.bounds != Bounds::default();
         let bounded = self.bounds != Bounds::default() || regions.iter().any(|region| region.max_volume.is_some());
         Tetrahedralizer::new()
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
-            .interior(if self.refine { lattice } else { Interior::None })
+            .interior(interior)
             .refine(bounded.then_some(refinement))
-            .sizing(self.size.filter(|_| bounded || self.split).map_or(Sizing::Surface, Sizing::Constant))
+            .sizing(self.size.filter(|_| sized).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .layers(self.layers)
             .optimize(self.optimize)
-            .effort(if self.sparse { Effort::Quick } else { Effort::Full })
+            .effort(if self.quick { Effort::Quick } else { Effort::Full })
+            .max_tets(self.max_tets)
             .strict(self.strict)
     }
+}
+
+/// Checks lengths and growths.
+fn validate_sizes(args: &Args) -> Result<(), Failure> {
+    let sizes = args.size.iter().map(|size| ("--size", size));
+    let sizes = sizes.chain(args.region_size.iter().map(|(_, size)| ("--region-size", size)));
+    for (flag, &size) in sizes {
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(not_positive(flag, size));
+        }
+    }
+    let least = Interior::LEAST_GROWTH;
+    let growths = [("--growth", &args.growth)].into_iter();
+    for (flag, &growth) in growths.chain(args.region_growth.iter().map(|(_, growth)| ("--region-growth", growth))) {
+        if !(growth >= least && growth.is_finite()) {
+            return Err(Failure::usage(format!("{flag} is {growth}: give a finite number of at least {least}")));
+        }
+    }
+    Ok(())
 }
 
 /// Bounds of the flags.

@@ -13,7 +13,7 @@ pub fn point(text: &str) -> Result<Point3, String> {
     }
 }
 
-/// Parses `X,Y,Z[:id=N][:volume=MAX][:size=LENGTH][:growth=G]`. The id is 0 if it is not given.
+/// Parses `X,Y,Z[:id=N][:volume=MAX]`. The id is 0 if it is not given.
 pub fn region(text: &str) -> Result<Region, String> {
     let mut parts = text.split(':');
     let mut region = Region::new(point(parts.next().unwrap_or_default())?, 0);
@@ -25,9 +25,7 @@ pub fn region(text: &str) -> Result<Region, String> {
                 region
             }
             "volume" => region.max_volume(number(value)?),
-            "size" => region.size(number(value)?),
-            "growth" => region.growth(number(value)?),
-            _ => return Err(format!("unknown key '{key}': give id, volume, size or growth")),
+            _ => return Err(format!("unknown key '{key}': give id or volume")),
         };
     }
     Ok(region)
@@ -39,9 +37,9 @@ mod tests {
 
     #[test]
     fn regions_have_a_point_and_keys() {
-        let region = region("-1,2.5,3e0:id=7:volume=0.5:growth=1.5").expect("a region");
+        let region = region("-1,2.5,3e0:id=7:volume=0.5").expect("a region");
         assert_eq!((region.seed, region.id), (Point3::new(-1.0, 2.5, 3.0), 7));
-        assert_eq!((region.max_volume, region.size, region.growth), (Some(0.5), None, Some(1.5)));
+        assert_eq!((region.max_volume, region.size), (Some(0.5), None));
         for wrong in ["1,2", "1,2,3,4", "1,2,inf", "1,2,x", "1,2,3:id=0", "1,2,3:id", "1,2,3:mass=2"] {
             assert!(super::region(wrong).is_err(), "{wrong}");
         }

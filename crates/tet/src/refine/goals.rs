@@ -56,6 +56,8 @@ pub struct Fault {
     pub excess: f64,
     /// Minimum length of new edges.
     pub spacing: f64,
+    /// True for a violation of the radius-edge ratio alone.
+    pub is_ratio: bool,
 }
 
 impl Goals<'_> {
@@ -66,16 +68,16 @@ impl Goals<'_> {
         let longest = edges.iter().copied().fold(0.0, f64::max);
         let shortest = edges.iter().copied().fold(f64::INFINITY, f64::min);
         let mut worst: Option<Fault> = None;
-        let mut note = |excess: f64, spacing: f64| {
+        let mut note = |excess: f64, spacing: f64, is_ratio: bool| {
             if excess > 1.0 && worst.is_none_or(|w| excess > w.excess) {
-                worst = Some(Fault { excess, spacing });
+                worst = Some(Fault { excess, spacing, is_ratio });
             }
         };
         let here = region.and_then(|r| r.max_volume).unwrap_or(f64::INFINITY);
         let volume = here.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
         if volume < f64::INFINITY {
             let own = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])) / 6.0;
-            note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt());
+            note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt(), false);
         }
         let here = region.and_then(|r| r.size.as_deref());
         if self.size.is_some() || here.is_some() {
@@ -84,19 +86,32 @@ impl Goals<'_> {
             let wanted =
                 self.size.map_or(f64::INFINITY, |f| f(&middle)).min(here.map_or(f64::INFINITY, |f| f(&middle)));
             if wanted > 0.0 {
-                note(longest / (LONGER * wanted), 0.6 * wanted);
+                note(longest / (LONGER * wanted), 0.6 * wanted, false);
             }
         }
         if let Some(bound) = self.bounds.max_radius_edge {
             let radius = circumcenter(p).map_or(f64::INFINITY, |c| (c - p[0]).norm());
-            note((radius / shortest / bound).min(1e3), shortest);
+            note((radius / shortest / bound).min(1e3), shortest, true);
         }
         if let Some(bound) = self.bounds.min_dihedral {
             let angle = dihedral_range(p).0.to_degrees();
-            note((bound / angle).min(1e3), shortest);
+            note((bound / angle).min(1e3), shortest, false);
         }
         worst
     }
+}
+
+/// True if a point lies in the smallest sphere through the corners of a triangle.
+pub(super) fn encroaches(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(&v);
+    let area = normal.norm_squared();
+    if area == 0.0 {
+        return false;
+    }
+    let offset = (v.cross(&normal) * -u.norm_squared() + u.cross(&normal) * v.norm_squared()) / (-2.0 * area);
+    let center = a + offset;
+    (p - center).norm_squared() < offset.norm_squared()
 }
 
 /// Circumcentre of four points; `None` if it is not finite.
@@ -105,4 +120,23 @@ pub(super) fn circumcenter(p: [&Point3; 4]) -> Option<Point3> {
     let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
     let c = (vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared()) / (2.0 * uv.dot(&w));
     c.iter().all(|x| x.is_finite()).then(|| p[0] + c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_sphere_of_a_triangle_has_its_circumcentre() {
+        let p = Point3::new;
+        let t = [p(0.0, 0.0, 0.0), p(4.0, 0.0, 0.0), p(0.0, 3.0, 0.0)];
+        let t = t.each_ref();
+        // The circumcentre is (2, 1.5, 0), with radius 2.5.
+        for (inside, q) in
+            [(true, p(2.0, 1.5, 2.49)), (false, p(2.0, 1.5, -2.51)), (true, p(4.0, 3.0, 0.0) - Vec3::x() * 0.01)]
+        {
+            assert_eq!(encroaches(&q, t), inside, "{q}");
+        }
+        assert!(encroaches(&p(-0.4, 1.5, 0.0), t) && !encroaches(&p(-0.6, 1.5, 0.0), t));
+    }
 }

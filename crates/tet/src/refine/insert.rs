@@ -3,7 +3,7 @@
 //! cross a frozen face. A point is rejected if it comes closer to others than the violation justifies. This ensures
 //! termination, even for input with small angles.
 
-use super::goals::{Fault, Goals, circumcenter};
+use super::goals::{Fault, Goals, circumcenter, encroaches};
 use crate::complex::Complex;
 use anastomesh_mesh::geometry::predicates::{in_exact_range, insphere, orient3d};
 use anastomesh_mesh::geometry::{Point3, Vec3};
@@ -12,11 +12,13 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Maximum tetrahedra in a cavity.
-const MAX_CAVITY: usize = 256;
+const MAX_CAVITY: usize = 4096;
 /// Maximum trims of a cavity before its point is rejected.
 const MAX_TRIMS: usize = 24;
 /// Maximum steps of a walk to a point.
 const MAX_STEPS: usize = 200;
+/// Positions of a new point, as parts of the way from the centroid to the circumcentre.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.0];
 /// Minimum radius ratio of a new tetrahedron on the boundary, unless the worst replaced one is lower.
 const AT_BOUNDARY: f64 = 0.25;
 /// Minimum radius ratio of a new inner tetrahedron, unless the worst replaced one is lower.
@@ -150,18 +152,19 @@ impl Refiner<'_, '_> {
         let p = self.corners(t);
         let sum: Vec3 = p.iter().map(|x| x.coords).sum();
         let middle = Point3::from(sum / 4.0);
-        let Some(center) = circumcenter(p) else { return self.insert(t, middle, fault.spacing) };
-        // If the circumcentre is outside or too close to the boundary, a nearer position may do.
-        [1.0, 0.5, 0.0].into_iter().any(|share| self.insert(t, middle + (center - middle) * share, fault.spacing))
+        let Some(center) = circumcenter(p) else { return self.insert(t, middle, fault) };
+        // If the circumcentre is outside or too close to the boundary, a nearer position may do. For the radius-edge ratio, positions
+        // near the centroid do more harm beside needles than good elsewhere.
+        let shares = if fault.is_ratio { &SHARES[..2] } else { &SHARES[..] };
+        shares.iter().any(|&share| self.insert(t, middle + (center - middle) * share, fault))
     }
 
-    fn insert(&mut self, t: u32, p: Point3, spacing: f64) -> bool {
+    fn insert(&mut self, t: u32, p: Point3, fault: Fault) -> bool {
         if !p.iter().all(|&x| in_exact_range(x)) {
             return false;
         }
         let Some(start) = self.walk(t, &p) else { return false };
-        self.dig(start, &p);
-        if !self.trim(start, &p) || !self.is_worthwhile(&p, spacing) {
+        if !self.dig(start, &p, fault.is_ratio) || !self.trim(start, &p) || !self.is_worthwhile(&p, fault.spacing) {
             return false;
         }
         let region = self.region(start);
@@ -230,8 +233,10 @@ impl Refiner<'_, '_> {
         self.cavity.push(t);
     }
 
-    /// Collects the tetrahedra around `start` whose circumspheres contain `p`.
-    fn dig(&mut self, start: u32, p: &Point3) {
+    /// Collects the tetrahedra around `start` whose circumspheres contain `p`. Returns false for a point near the wall: it
+    /// lies in the smallest sphere of a fixed triangle that it sees, and is to improve a radius-edge ratio. Such points lead to ever
+    /// more points without gain.
+    fn dig(&mut self, start: u32, p: &Point3, away: bool) -> bool {
         self.stamp.resize(self.c.slots(), 0);
         self.now += 1;
         self.cavity.clear();
@@ -242,7 +247,13 @@ impl Refiner<'_, '_> {
             head += 1;
             for half in 4 * t..4 * t + 4 {
                 let n = self.c.mate(half) >> 2;
-                if self.c.is_frozen(half) || self.c.is_ghost(n) || self.is_in(n) {
+                if self.c.is_frozen(half) || self.c.is_ghost(n) {
+                    if away && encroaches(p, self.c.face(half).map(|v| &self.c.points[v as usize])) {
+                        return false;
+                    }
+                    continue;
+                }
+                if self.is_in(n) {
                     continue;
                 }
                 let [a, b, d, e] = self.corners(n);
@@ -251,6 +262,7 @@ impl Refiner<'_, '_> {
                 }
             }
         }
+        true
     }
 
     /// Removes tetrahedra that hide a face, vertex or frozen face from `p`. Returns false if `start` is one.
