@@ -46,7 +46,7 @@ fn defects_are_listed_and_refinement_removes_them() {
     assert_eq!(as_it_is.attempts[0].fault, Some(Fault::Invalid));
     let refined = Run::of_skeleton(crossing()).refine(RefineParams::default()).mesh(&()).unwrap();
     assert_eq!((&refined.defects[..], refined.kept), (&[][..], 0));
-    assert_eq!((refined.attempts[0].strategy, refined.attempts[0].fault), (Strategy::Planned, None));
+    assert_eq!((refined.attempts[0].strategy, refined.attempts[0].fault), (Strategy::OverlapsMoved, None));
     assert_ne!(refined.networks.network, refined.networks.prepared);
     assert!(refined.networks.refine.is_some_and(|report| report.result.overlaps == 0));
     assert_eq!(refined.network.nodes.len(), refined.networks.network.nodes.len());
@@ -58,10 +58,11 @@ fn a_refinement_that_does_not_help_is_followed_by_the_fallbacks() {
     let params = RefineParams::default().iterations(0).residual(Residual::Report);
     let made = Run::of_skeleton(crossing()).refine(params).mesh(&()).unwrap();
     let strategies: Vec<Strategy> = made.attempts.iter().map(|attempt| attempt.strategy).collect();
-    assert_eq!(strategies, [Strategy::Planned, Strategy::Unrefined, Strategy::WiderClearance]);
+    let [moved, planned] = [Strategy::OverlapsMoved, Strategy::Planned];
+    assert_eq!(strategies, [moved, planned, Strategy::Unrefined, Strategy::WiderClearance]);
     assert!(made.attempts.iter().all(|attempt| attempt.fault == Some(Fault::Invalid)), "{:?}", made.attempts);
-    // Where none is better the first one stays.
-    assert_eq!(made.kept, 0);
+    // Where none is better the planned one stays.
+    assert_eq!(made.kept, 1);
     assert!(made.networks.refine.is_some());
 }
 

@@ -144,7 +144,7 @@ impl Changes {
             let by = match tip.done {
                 TouchedBy::Retracted { by } => by,
                 TouchedBy::Removed => f64::INFINITY,
-                TouchedBy::Joined | TouchedBy::Left => continue,
+                TouchedBy::Extended { .. } | TouchedBy::Joined | TouchedBy::Left => continue,
             };
             match taken.iter_mut().find(|(node, _)| *node == tip.tip) {
                 Some((_, sum)) => *sum += by,

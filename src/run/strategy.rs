@@ -131,8 +131,8 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
 
 /// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
 fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
-    let as_given = match networks.may_be_sound_as_given().then(|| meshing.attempt(Strategy::AsGiven, networks.clone()))
-    {
+    let may_be_sound = networks.may_be_sound_as_given();
+    let as_given = match may_be_sound.then(|| meshing.attempt(Strategy::AsGiven, networks.clone())) {
         Some(Ok(candidate)) if meshing.attempts[candidate.attempt].fault.is_none() => {
             meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
             return Ok(candidate);
@@ -150,7 +150,7 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
         return Ok(local);
     }
     let networks = (meshing.refined)(networks)?;
-    match (as_given, planned(networks, false, meshing)) {
+    match (as_given, planned(networks, !may_be_sound, meshing)) {
         (Some(as_given), Err(Failure { error: RunError::BlocksFailed(_), .. })) => Ok(as_given),
         (Some(as_given), Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
             let why = "refinement gives a mesh that differs more from the given network: nothing was moved";

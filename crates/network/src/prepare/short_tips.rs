@@ -8,8 +8,10 @@ use serde::Serialize;
 /// Walls blend before they separate, and a cap needs a piece of its own vessel.
 const MARGIN: f64 = 1.1;
 const OWN: f64 = 0.3;
-/// Maximum extension of a tip, in its radii. Shorter branches are no vessels.
+/// Maximum extension of a tip, in its radii, if that is more than the length of its vessel.
 const FURTHEST: f64 = 3.0;
+/// Length of a vessel, in radii, up to which it is removed rather than extended by more than its length.
+const STUB: f64 = 1.5;
 
 /// Tip that is too close to its branch point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -84,7 +86,8 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
     let short = needed - length;
     (short > 0.0).then(|| {
         let name = |n: NodeId| skeleton.node(n).original;
-        let put_out = short <= FURTHEST * radius;
+        let is_stub = short > length && length <= STUB * radius;
+        let put_out = short <= length.max(FURTHEST * radius) && !is_stub;
         ExtendedTip { node: tip, way, told: ShortTip { tip: name(tip), from: name(from), length, needed, put_out } }
     })
 }

@@ -117,6 +117,7 @@ impl Lists {
         let tips = tips.iter().map(|t| {
             let done = match t.done {
                 TouchedBy::Retracted { by } => format!("shortened by {by:.4}"),
+                TouchedBy::Extended { by } => format!("extended by {by:.4}"),
                 TouchedBy::Joined => "joined".into(),
                 TouchedBy::Removed => "removed, as its vessel is too short for a cap".into(),
                 TouchedBy::Left => "kept, as its vessel runs along the other".into(),

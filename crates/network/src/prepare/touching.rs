@@ -29,6 +29,11 @@ pub enum TouchedBy {
         /// Distance, in the unit of the network.
         by: f64,
     },
+    /// The tip was extended past the other vessel, as its own vessel has no space for a cap.
+    Extended {
+        /// Distance, in the unit of the network.
+        by: f64,
+    },
     /// The tip was joined to the other vessel.
     Joined,
     /// The vessel had no space for a cap and was removed.
@@ -55,6 +60,11 @@ const CLEAR: f64 = 1.15;
 const FURTHEST: f64 = 4.0;
 /// Retraction of a tip that could not be capped, in its radii.
 const BACK: f64 = 2.0;
+/// Minimum extension of such a tip, in its radii: a block tries shorter ones. Maximum extension of any tip.
+const FORTH: f64 = 3.25;
+const FURTHEST_FORTH: f64 = 6.0;
+/// Minimum distance of an extended tip from other walls, in its radii.
+const OUT: f64 = 0.3;
 /// Minimum remaining length of a retracted vessel, in radii of its branch point. Shorter vessels are spurs.
 const LEFT: f64 = 2.0;
 /// Step of the retraction, in radii of the tip.
@@ -98,7 +108,7 @@ pub fn take_back(skeleton: &Skeleton, tips: &[u32]) -> Result<(Skeleton, Vec<Tou
     Ok((clean(&work.result())?.0, found))
 }
 
-/// Network during the treatment. Vessels only become shorter, so bounding boxes stay valid.
+/// Network during the treatment. Bounding boxes are those of the given vessels; extended ones are clear of all others.
 struct Work<'a> {
     given: &'a Skeleton,
     adjacency: Adjacency,
@@ -185,6 +195,11 @@ impl<'a> Work<'a> {
 
     /// Nearest vessel that leaves no space for a cap at a position, and its radius there.
     fn in_the_way(&self, way: &TipBranch, stand: &Stand) -> Option<(EdgeId, f64)> {
+        self.closer_than(CLEAR, way, stand)
+    }
+
+    /// Nearest vessel at a position whose axis is closer than `clear` times the sum of the radii, at most `CLEAR`.
+    fn closer_than(&self, clear: f64, way: &TipBranch, stand: &Stand) -> Option<(EdgeId, f64)> {
         let reach = Aabb::of_points([&stand.point]).grown(CLEAR * stand.radius);
         let mut nearest: Option<(f64, EdgeId, f64)> = None;
         self.tree.query(&reach, |id| {
@@ -196,7 +211,7 @@ impl<'a> Work<'a> {
             let (t, distance) = point_segment(&stand.point, &a, &b);
             let radii = self.given.edge(edge).radii;
             let radius = radii[0] + (radii[1] - radii[0]) * t;
-            let gap = distance - CLEAR * (stand.radius + radius);
+            let gap = distance - clear * (stand.radius + radius);
             let is_nearer = nearest.is_none_or(|(g, e, _)| gap < g || gap <= g && edge < e);
             if gap < 0.0 && is_nearer && !self.is_own(way, stand, edge, radius) {
                 nearest = Some((gap, edge, radius));
@@ -207,13 +222,18 @@ impl<'a> Work<'a> {
 
     /// True if a whole section of a path lies within another vessel.
     fn is_buried(&self, way: &TipBranch, stand: &Stand) -> bool {
+        self.is_near_a_wall(way, stand, -stand.radius)
+    }
+
+    /// True if the axis of a path lies within another vessel, or at most `margin` outside.
+    fn is_near_a_wall(&self, way: &TipBranch, stand: &Stand, margin: f64) -> bool {
         let mut found = false;
-        self.tree.query(&Aabb::of_points([&stand.point]), |id| {
+        self.tree.query(&Aabb::of_points([&stand.point]).grown(margin.max(0.0)), |id| {
             let edge = EdgeId(id);
             let tube = self.given.tube(edge);
             let (t, distance) = point_segment(&stand.point, &tube.a, &tube.b);
             let other = self.branches.of_edge[edge.index()].0 != way.branch && !self.gone[edge.index()];
-            found |= other && distance + stand.radius <= tube.radius(t);
+            found |= other && distance - margin <= tube.radius(t);
         });
         found
     }
@@ -263,8 +283,45 @@ impl<'a> Work<'a> {
         if way.from.is_none() || way.length > FURTHEST * radii + keep {
             return TouchedBy::Left;
         }
+        self.extend_or_remove(way, STEP)
+    }
+
+    /// Extends a tip straight on by at least `least` radii and at most the length of its vessel, to the first position with
+    /// space for a cap. If another vessel is in the way, the vessel of the tip is removed.
+    fn extend_or_remove(&mut self, way: &TipBranch, least: f64) -> TouchedBy {
+        let is_buried = self.stands(way).first().is_some_and(|stand| self.is_buried(way, stand));
+        if let Some(stand) = self.beyond(way, least).filter(|_| !is_buried) {
+            let original = self.nodes[way.tip.index()].original;
+            self.nodes[way.tip.index()] = Node { position: stand.point, radius: stand.radius, original };
+            return TouchedBy::Extended { by: -stand.arc };
+        }
         way.edges.iter().for_each(|e| self.gone[e.index()] = true);
         TouchedBy::Removed
+    }
+
+    fn beyond(&self, way: &TipBranch, least: f64) -> Option<Stand> {
+        let first = self.given.edge(way.edges[0]);
+        let radius = first.radii[first.end(way.tip)];
+        let [tip, before] = [way.tip, first.other(way.tip)].map(|n| self.given.node(n).position);
+        let direction = (tip - before).try_normalize(0.0)?;
+        let furthest = (FURTHEST_FORTH * radius).min(way.length);
+        for k in 1.. {
+            let by = f64::from(k) * STEP * radius;
+            if by > furthest {
+                return None;
+            }
+            let stand = Stand { arc: -by, piece: 0, point: tip + direction * by, radius };
+            if self.closer_than(1.0, way, &stand).is_some() {
+                return None;
+            }
+            // The cap must leave the vessels of its own branch point, too.
+            let is_clear =
+                |stand| self.in_the_way(way, stand).is_none() && !self.is_near_a_wall(way, stand, OUT * radius);
+            if by >= least * radius && is_clear(&stand) {
+                return Some(stand);
+            }
+        }
+        None
     }
 
     /// Retracts a tip by `BACK` radii, and further until its disc leaves other vessels.
@@ -283,10 +340,7 @@ impl<'a> Work<'a> {
             None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
                 TouchedBy::Left
             }
-            None => {
-                way.edges.iter().for_each(|e| self.gone[e.index()] = true);
-                TouchedBy::Removed
-            }
+            None => self.extend_or_remove(way, FORTH),
         }
     }
 
@@ -405,6 +459,15 @@ mod tests {
         hair.nodes[3].radius = 0.02;
         let (_, told) = take_back(&hair, &[3]).expect("vessels");
         assert_eq!(told[0].done, TouchedBy::Removed);
+        // A stub that has space beyond.
+        let mut stub = fork(2.5);
+        stub.edges[2].radii = [0.7; 2];
+        stub.nodes[3].radius = 0.7;
+        let (extended, told) = take_back(&stub, &[3]).expect("vessels");
+        let TouchedBy::Extended { by } = told[0].done else { panic!("{told:?}") };
+        assert!((FORTH * 0.7..=2.5).contains(&by), "{by}");
+        let end = extended.nodes.iter().find(|node| node.original == 3).expect("there");
+        assert!((end.position.y - 2.5 - by).abs() < 1e-9);
         let given = fork(12.0);
         assert_eq!(take_back(&given, &[1, 77]).expect("vessels"), (given, Vec::new()));
     }
