@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn signs_are_exact_where_the_filter_fails() {
-        let (a, b, c) = ([0.1, 0.1, 0.1], [0.7, 0.2, 0.3], [0.3, 0.9, 0.4]);
+        let (a, b, c): (_, [f64; 3], [f64; 3]) = ([0.1_f64, 0.1, 0.1], [0.7, 0.2, 0.3], [0.3, 0.9, 0.4]);
         // The sum of three times a tenth is rounded: the sign of the remainder decides.
         let on = [a[0] + (b[0] - a[0]) * 0.5, a[1] + (b[1] - a[1]) * 0.5, a[2] + (b[2] - a[2]) * 0.5];
         let up = [on[0], on[1], f64::from_bits(on[2].to_bits() + 4)];
