@@ -1,7 +1,7 @@
 //! Conditions on labelled triangles, patches and caps.
 
 use crate::faces::{Boundary, is_odd, key};
-use crate::mesh::{Cap, Mesh};
+use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 use std::collections::{HashMap, HashSet};
@@ -42,7 +42,7 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
 fn differences(mesh: &Mesh, boundary: &Boundary) -> Vec<[u32; 3]> {
     let may_be_inside = mesh.expected_loops.is_none();
     let is_allowed = |face: &[u32; 3]| may_be_inside && boundary.labelled_inside.binary_search(face).is_ok();
-    let entry = |&face: &[u32; 3]| (key(face), is_odd(face));
+    let entry = |&face: &[u32; 3]| (key(face), is_odd(face) && !mesh.is_undirected);
     let mut real: Vec<_> = boundary.faces.iter().map(entry).collect();
     let mut labelled: Vec<_> = mesh.triangles.iter().map(entry).filter(|(face, _)| !is_allowed(face)).collect();
     real.sort_unstable();
@@ -68,8 +68,18 @@ fn patches(mesh: &Mesh, report: &mut Report) {
         mesh.caps.iter().filter(|cap| !with_caps.insert(cap.patch) || !ids.contains(&cap.patch)).map(|cap| cap.patch),
     );
     report.add(C::OwnPatch, equal.iter().map(|id| format!("patch {id}")));
-    let unknown = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| !ids.contains(label));
+    let Some(terminals) = &mesh.expected_terminals else { return };
+    // Outlets that share a patch have no caps of their own: then every named patch is allowed.
+    let is_grouped = |(id, name): &(i64, String)| is_cap_name(name) && !with_caps.contains(id);
+    if !terminals.is_empty() && mesh.patches.iter().any(is_grouped) {
+        with_caps.extend(ids);
+    }
+    let unknown = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| !with_caps.contains(label));
     report.add(C::WallOrCap, unknown.map(|(&face, label)| format!("patch {label} of face {}", Ids(face))));
+}
+
+fn is_cap_name(name: &str) -> bool {
+    FLAT.iter().any(|start| name.starts_with(start))
 }
 
 /// Checks the shapes of caps, and of patches that are named like caps.
@@ -82,17 +92,20 @@ fn caps(mesh: &Mesh, report: &mut Report) {
     let described: HashSet<i64> = mesh.caps.iter().map(|cap| cap.patch).collect();
     for cap in &mesh.caps {
         let own = triangles.get(&cap.patch).map_or(&[][..], Vec::as_slice);
-        let holds = Shape::of(&mesh.points, own, cap.center, Some(cap.normal)).compare(cap);
+        let holds = Shape::of(&mesh.points, own, cap.center, Some(cap.normal), cap.radius).compare();
         let holds = [discs(own).len() == 1 && is_disc(own), holds[0], holds[1], holds[2], holds[3]];
         let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
         wrong.for_each(|(list, _)| list.push(format!("patch {}", cap.patch)));
     }
     for (id, name) in &mesh.patches {
-        if described.contains(id) || !FLAT.iter().any(|start| name.starts_with(start)) {
+        if described.contains(id) || !is_cap_name(name) {
             continue;
         }
         for part in discs(triangles.get(id).map_or(&[][..], Vec::as_slice)) {
-            let shape = Shape::of(&mesh.points, &part, mesh.points[part[0][0] as usize], None);
+            let center = mesh.points[part[0][0] as usize];
+            let corners = part.iter().flatten().flat_map(|&v| minus(mesh.points[v as usize], center));
+            let unit = corners.map(f64::abs).fold(0.0, f64::max);
+            let shape = Shape::of(&mesh.points, &part, center, None, unit);
             let holds = [is_disc(&part), shape.is_flat((shape.area / PI).sqrt())];
             let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
             wrong.for_each(|(list, _)| list.push(format!("patch {id} at face {}", Ids(part[0]))));
@@ -117,9 +130,9 @@ struct Shape {
 }
 
 impl Shape {
-    /// Shape of triangles; without a normal, that of their mean.
-    fn of(points: &[Vector], triangles: &[[u32; 3]], center: Vector, normal: Option<Vector>) -> Self {
-        let corners = |t: &[u32; 3]| t.map(|v| minus(points[v as usize], center));
+    /// Shape of triangles, with all lengths in a unit; without a normal, that of their mean.
+    fn of(points: &[Vector], triangles: &[[u32; 3]], center: Vector, normal: Option<Vector>, unit: f64) -> Self {
+        let corners = |t: &[u32; 3]| t.map(|v| minus(points[v as usize], center).map(|x| x / unit));
         let areas: Vec<Vector> = triangles.iter().map(|t| area(corners(t))).collect();
         let sum = areas.iter().fold([0.0; 3], |sum, a| [0, 1, 2].map(|k| sum[k] + a[k]));
         let normal = normal.unwrap_or(sum);
@@ -137,7 +150,7 @@ impl Shape {
         }
         let vertices = || triangles.iter().flatten().map(|&v| points[v as usize]);
         let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
-        let shift = |p: Vector| ROUNDING * dot(p.map(f64::abs), normal.map(f64::abs));
+        let shift = |p: Vector| ROUNDING * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
         Self {
             area: total,
             off_centre: dot(moment, moment).sqrt() / total,
@@ -147,15 +160,14 @@ impl Shape {
         }
     }
 
+    /// False without triangles.
     fn is_flat(&self, radius: f64) -> bool {
-        self.height <= FLATNESS * radius + self.rounding
+        self.area > 0.0 && self.height <= FLATNESS * radius + self.rounding
     }
 
-    /// Flatness, centre, area and direction of a described cap.
-    fn compare(&self, cap: &Cap) -> [bool; 4] {
-        let disc = PI * cap.radius * cap.radius;
-        let centred = self.off_centre <= 0.1 * cap.radius;
-        [self.is_flat(cap.radius), centred, (self.area - disc).abs() <= 0.05 * disc, self.faces_along]
+    /// Flatness, centre, area and direction of a described cap, whose radius is the unit.
+    fn compare(&self) -> [bool; 4] {
+        [self.is_flat(1.0), self.off_centre <= 0.1, (self.area - PI).abs() <= 0.05 * PI, self.faces_along]
     }
 }
 

@@ -1,5 +1,5 @@
-//! Second checker of tetrahedral meshes. It shares no code with the mesher and its checker: readers, exact arithmetic,
-//! topology and geometry are its own, so that a fault in one of them does not hide in both.
+//! Second checker of tetrahedral meshes. It shares no code with the mesher and its checker. Readers, exact arithmetic,
+//! topology and geometry are its own, so that no fault hides in both.
 //!
 //! ```
 //! use anastomesh_verify::{Demands, Mesh, verify};

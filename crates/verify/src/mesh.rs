@@ -12,6 +12,8 @@ pub struct Mesh {
     pub tets: Vec<[u32; 4]>,
     /// Vertices of each labelled triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// True if labelled triangles may have either direction, as in TetGen's files.
+    pub is_undirected: bool,
     /// Patch of each labelled triangle.
     pub labels: Vec<i64>,
     /// Ids and names of patches.

@@ -2,7 +2,7 @@
 
 use crate::faces::Boundary;
 use crate::labels::WALL;
-use crate::mesh::{Mesh, Read, fail, next_n};
+use crate::mesh::{Cap, Mesh, Read, fail, next_n};
 use crate::report::{Condition, Report};
 use crate::tree::Tree;
 use crate::xml::VtkFile;
@@ -105,8 +105,18 @@ fn vtp(bytes: &[u8]) -> Read<Vec<Cone>> {
 pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
     let walls = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label == WALL).map(|(face, _)| face);
     let caps = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label != WALL).map(|(face, _)| face);
-    let on_caps: HashSet<u32> = caps.flatten().copied().collect();
-    // Without labels, every boundary vertex belongs to the wall.
+    let mut on_caps: HashSet<u32> = caps.flatten().copied().collect();
+    // Without labels, every boundary vertex belongs to the wall, except those in the plane of a cap and near it.
+    if mesh.triangles.is_empty() {
+        let is_on = |p: &[f64; 3], cap: &Cap| {
+            let from = [p[0] - cap.center[0], p[1] - cap.center[1], p[2] - cap.center[2]];
+            let height: f64 = (0..3).map(|k| from[k] * cap.normal[k]).sum();
+            let square: f64 = from.iter().map(|x| x * x).sum();
+            height.abs() <= 1e-6 * cap.radius && square <= 2.0 * cap.radius * cap.radius
+        };
+        let vertices = boundary.faces.as_flattened().iter();
+        on_caps.extend(vertices.filter(|&&v| mesh.caps.iter().any(|cap| is_on(&mesh.points[v as usize], cap))));
+    }
     let faces: Vec<&[u32; 3]> =
         if mesh.triangles.is_empty() { boundary.faces.iter().collect() } else { walls.collect() };
     let mut vertices: Vec<u32> = faces.into_iter().flatten().copied().collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// Reads the tetrahedra of an `.ele` file, and the files of the same name beside it. `.face` may be missing.
 pub fn read(path: &Path) -> Read<Mesh> {
-    let mut mesh = Mesh::default();
+    let mut mesh = Mesh { is_undirected: true, ..Mesh::default() };
     let (nodes, _) = table(&path.with_extension("node"), 3)?;
     let first = nodes.first().map_or(0, |row| row[0] as i64);
     for (i, row) in nodes.iter().enumerate() {
@@ -23,12 +23,8 @@ pub fn read(path: &Path) -> Read<Mesh> {
         let (rows, head) = table(&faces, 3)?;
         let has_marker = head.get(1).is_some_and(|&n| n > 0.0);
         for row in rows {
-            let marker = if has_marker { row.get(4).copied().unwrap_or(0.0) } else { 0.0 };
-            // Faces of marker 0 are interior; without markers the file lists the boundary.
-            if !has_marker || marker != 0.0 {
-                mesh.triangles.push([row[1], row[2], row[3]].map(vertex));
-                mesh.labels.push(marker as i64);
-            }
+            mesh.triangles.push([row[1], row[2], row[3]].map(vertex));
+            mesh.labels.push(if has_marker { row.get(4).map_or(0, |&marker| marker as i64) } else { 0 });
         }
     }
     Ok(mesh)

@@ -167,6 +167,13 @@ fn labels_are_compared_with_the_boundary() {
         }),
         wrong
     );
+    // Only TetGen's faces have no direction.
+    let reversed = broken(|m| {
+        m.is_undirected = true;
+        let i = wall(m);
+        m.triangles[i].swap(0, 1);
+    });
+    assert!(reversed.is_empty());
     let inside = |m: &mut Mesh| {
         m.triangles.push([0, 1, 18]);
         m.labels.push(1);
@@ -230,6 +237,22 @@ fn patches_and_caps_are_compared() {
     };
     assert_eq!(broken(named(1e-8)), ["cap_flat"]);
     assert!(broken(named(0.0)).is_empty());
+}
+
+/// Units of length do not matter, far beyond those that the mesher accepts.
+#[test]
+fn tiny_and_huge_meshes_are_valid() {
+    for scale in [1e-290, 1e-160, 1e-60, 1e60, 1e160, 1e290] {
+        let mut mesh = tube();
+        mesh.points.iter_mut().for_each(|p| *p = p.map(|x| x * scale));
+        for cap in &mut mesh.caps {
+            cap.center = cap.center.map(|x| x * scale);
+            cap.radius *= scale;
+        }
+        assert_eq!(violated(&mesh), [""; 0], "{scale}");
+        mesh.tets[3].swap(0, 1);
+        assert_eq!(violated(&mesh)[0], "positive_tets", "{scale}");
+    }
 }
 
 #[test]
