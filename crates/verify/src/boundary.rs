@@ -86,9 +86,13 @@ fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report:
     vertices.sort_unstable();
     vertices.dedup();
     let mut euler = vec![0_i64; count as usize];
-    vertices.iter().for_each(|&(s, _)| euler[s as usize] += 2);
+    for &(s, _) in &vertices {
+        euler[s as usize] += 2;
+    }
     // Each face has a half of three edges.
-    surface.iter().for_each(|&s| euler[s as usize] -= 1);
+    for &s in surface {
+        euler[s as usize] -= 1;
+    }
     // Here `euler` is twice the characteristic, 2 (2 - 2g).
     report.figures.genus = euler.iter().map(|e| (4 - e) / 4).sum();
     let Some(expected) = &mesh.expected_loops else { return };

@@ -25,6 +25,10 @@ pub fn orient_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 
     if det.abs() > bound && sum < f64::MAX {
         return if det > 0.0 { 1 } else { -1 };
     }
+    exact_3d(a, b, c, d)
+}
+
+fn exact_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
     let numbers = Scaled::new(a.iter().chain(b).chain(c).chain(d).copied());
     let [p, q, r, s] = [a, b, c, d].map(|p| p.map(|x| numbers.integer(x)));
     sign(&determinant(&minus(&q, &p), &minus(&r, &p), &minus(&s, &p)))
@@ -38,6 +42,10 @@ pub fn orient_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
     if det.abs() > BOUND_2 * sum + UNDERFLOW && sum < f64::MAX {
         return if det > 0.0 { 1 } else { -1 };
     }
+    exact_2d(a, b, c)
+}
+
+fn exact_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
     let numbers = Scaled::new(a.into_iter().chain(b).chain(c));
     let [a, b, c] = [a, b, c].map(|p| p.map(|x| numbers.integer(x)));
     sign(&((&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0])))
@@ -124,6 +132,34 @@ mod tests {
         assert_eq!(orient_3d(&a, &b, &c, &a), 0);
         assert_eq!(orient_3d(&a, &b, &c, &[0.0, 0.0, 1.0]), 1);
         assert_eq!(orient_3d(&b, &a, &c, &[0.0, 0.0, 1.0]), -1);
+    }
+
+    /// Points in a plane, moved by some units in the last place, at all scales.
+    #[test]
+    fn the_filter_never_differs_from_integers() {
+        let mut state = 7_u64;
+        let mut random = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        let mut zeros = 0;
+        for round in 0..20_000 {
+            let scale = 2.0_f64.powi(random(2000) as i32 - 1000);
+            let mut number = || random(1 << 30) as f64 / f64::from(1 << 30) * scale;
+            let (a, b, c) =
+                ([number(), number(), number()], [number(), number(), number()], [number(), number(), number()]);
+            let (u, v) = (number() / scale, number() / scale);
+            let mut d = [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]));
+            for x in &mut d {
+                *x = f64::from_bits(x.to_bits().wrapping_add(random(5) * u64::from(x.is_normal())));
+            }
+            assert_eq!(orient_3d(&a, &b, &c, &d), exact_3d(&a, &b, &c, &d), "{round}: {a:?} {b:?} {c:?} {d:?}");
+            let e = [0, 1].map(|k| a[k] + u * (b[k] - a[k]));
+            let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
+            assert_eq!(orient_2d(a, b, e), exact_2d(a, b, e), "{round}: {a:?} {b:?} {e:?}");
+            zeros += usize::from(exact_2d(a, b, e) == 0);
+        }
+        assert!((10..19_000).contains(&zeros), "{zeros}");
     }
 
     #[test]

@@ -39,7 +39,9 @@ pub fn check(mesh: &Mesh, report: &mut Report) -> Option<Boundary> {
 
 fn cells(mesh: &Mesh, report: &mut Report) {
     let mut sorted: Vec<([u32; 4], u32)> = mesh.tets.iter().copied().zip(0..).collect();
-    sorted.iter_mut().for_each(|(t, _)| t.sort_unstable());
+    for (t, _) in &mut sorted {
+        t.sort_unstable();
+    }
     let is_repeated = |t: &[u32; 4]| t.windows(2).any(|pair| pair[0] == pair[1]);
     report.add(C::NoRepeatedVertex, sorted.iter().filter(|(t, _)| is_repeated(t)).map(|(_, i)| i));
     sorted.sort_unstable();

@@ -2,7 +2,7 @@
 
 use anastomesh_verify::{Demands, Read, ReadError, certificate, read_mesh, read_network, read_surface, verify};
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -123,7 +123,7 @@ fn run(args: &Args) -> Read<u8> {
 }
 
 /// Line and exit code of a mesh.
-fn one(args: &Args, demands: &Demands, path: &PathBuf) -> (String, u8) {
+fn one(args: &Args, demands: &Demands, path: &Path) -> (String, u8) {
     let shown = path.display();
     match report(args, demands, path) {
         Err(error) if args.json => (serde_json::json!({"file": path, "error": error.to_string()}).to_string(), 3),
@@ -137,7 +137,7 @@ fn one(args: &Args, demands: &Demands, path: &PathBuf) -> (String, u8) {
     }
 }
 
-fn report(args: &Args, demands: &Demands, path: &PathBuf) -> Read<anastomesh_verify::Report> {
+fn report(args: &Args, demands: &Demands, path: &Path) -> Read<anastomesh_verify::Report> {
     let mut report = verify(&read_mesh(path)?, demands);
     let named = |file: &PathBuf, e| ReadError::of_file(file, &e);
     let key = args.key.as_ref().map(|key| std::fs::read(key).map_err(|e| named(key, e))).transpose()?;

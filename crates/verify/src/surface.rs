@@ -71,7 +71,7 @@ fn stl(bytes: &[u8]) -> Read<Soup> {
     // Readers of STL use 32-bit numbers; the text may have more digits.
     let corner = |line: &str| next_n(&mut line.split_ascii_whitespace());
     match corners.map(corner).collect::<Option<Vec<[f64; 3]>>>() {
-        Some(corners) if !corners.is_empty() && corners.len() % 3 == 0 => Ok(corners.as_chunks().0.to_vec()),
+        Some(corners) if !corners.is_empty() && corners.len().is_multiple_of(3) => Ok(corners.as_chunks().0.to_vec()),
         _ => fail("no triangles, or a damaged one"),
     }
 }
@@ -86,16 +86,22 @@ fn ply(bytes: &[u8]) -> Read<Soup> {
     let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
     let (mut elements, mut format): (Vec<Element>, &str) = (Vec::new(), "");
     for line in head.lines() {
-        match line.split_ascii_whitespace().collect::<Vec<_>>()[..] {
-            ["format", name, _] => format = name,
-            ["element", name, count] => elements.push((name, count.parse().unwrap_or(0), Vec::new())),
-            ["property", "list", length, kind, name] => {
-                elements.iter_mut().last().into_iter().for_each(|e| e.2.push((Some(length), kind, name)))
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let property = match words[..] {
+            ["format", name, _] => {
+                format = name;
+                continue;
             }
-            ["property", kind, name] => {
-                elements.iter_mut().last().into_iter().for_each(|e| e.2.push((None, kind, name)))
+            ["element", name, count] => {
+                elements.push((name, count.parse().unwrap_or(0), Vec::new()));
+                continue;
             }
-            _ => {}
+            ["property", "list", length, kind, name] => (Some(length), kind, name),
+            ["property", kind, name] => (None, kind, name),
+            _ => continue,
+        };
+        if let Some((_, _, properties)) = elements.last_mut() {
+            properties.push(property);
         }
     }
     let mut values = Values { rest: &bytes[body..], format };

@@ -74,7 +74,9 @@ impl Tree {
                 self.pairs_of(high, high, found);
             }
             (Some(children), other) if other.is_none() || first.end - first.start >= second.end - second.start => {
-                children.iter().for_each(|&child| self.pairs_of(child, b, found));
+                for child in children {
+                    self.pairs_of(child, b, found);
+                }
             }
             (_, Some(children)) => children.iter().for_each(|&child| self.pairs_of(a, child, found)),
             _ => {
@@ -97,13 +99,12 @@ impl Tree {
             if !touch(&node.bounds, &place) {
                 continue;
             }
-            match node.children {
-                Some(children) => open.extend(children),
-                None => {
-                    let inside = self.order[node.start..node.end].iter();
-                    inside.filter(|&&i| touch(&self.boxes[i as usize], &place)).for_each(|&i| found(i));
-                }
+            if let Some(children) = node.children {
+                open.extend(children);
+                continue;
             }
+            let inside = self.order[node.start..node.end].iter();
+            inside.filter(|&&i| touch(&self.boxes[i as usize], &place)).for_each(|&i| found(i));
         }
     }
 }

@@ -195,7 +195,7 @@ impl<'a> VtkFile<'a> {
             "Int64" | "UInt64" | "Float64" => 8,
             other => return fail(format!("type '{other}' is not supported")),
         };
-        if bytes.len() % width != 0 {
+        if !bytes.len().is_multiple_of(width) {
             return fail("its length is no multiple of the size of a number");
         }
         let words = bytes.chunks_exact(width).map(|chunk| self.word(chunk) as u64);

@@ -1,6 +1,7 @@
 //! The program: readers, exit codes, certificates.
 
 use super::common::{cuboid, label, tube, vtu};
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -75,14 +76,14 @@ fn msh_2(mesh: &anastomesh_verify::Mesh) -> String {
         mesh.points.len()
     );
     for (i, [x, y, z]) in mesh.points.iter().enumerate() {
-        text += &format!("{} {x} {y} {z}\n", 10 + i);
+        let _ = writeln!(text, "{} {x} {y} {z}", 10 + i);
     }
-    text += &format!("$EndNodes\n$Elements\n{}\n", mesh.tets.len() + mesh.triangles.len());
+    let _ = writeln!(text, "$EndNodes\n$Elements\n{}", mesh.tets.len() + mesh.triangles.len());
     for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|v| v + 10)) {
-        text += &format!("1 2 2 1 1 {a} {b} {c}\n");
+        let _ = writeln!(text, "1 2 2 1 1 {a} {b} {c}");
     }
     for [a, b, c, d] in mesh.tets.iter().map(|t| t.map(|v| v + 10)) {
-        text += &format!("1 4 2 5 1 {a} {b} {c} {d}\n");
+        let _ = writeln!(text, "1 4 2 5 1 {a} {b} {c} {d}");
     }
     text + "$EndElements\n"
 }
@@ -166,7 +167,7 @@ fn surfaces_and_networks() {
     write(dir, "s.ply", format!("ply\nformat ascii 1.0\n{head}{a} 255\n{b} 255\n{c} 255\n3 0 1 2\n"));
     let mut binary = format!("ply\nformat binary_big_endian 1.0\n{head}").into_bytes();
     for point in &p[..3] {
-        point.iter().for_each(|x| binary.extend(x.to_be_bytes()));
+        binary.extend(point.iter().flat_map(|x| x.to_be_bytes()));
         binary.push(255);
     }
     binary.push(3);
@@ -223,4 +224,51 @@ fn certificates() {
     assert_eq!(with(&["m.vtu", "--certificate", "c.json", "--input", "net.swc"]), ("hashes".into(), Some(1)));
     write(dir, "c.json", "{}");
     assert_eq!(run(dir, &["m.vtu", "--certificate", "c.json"]).1, Some(3));
+}
+
+/// Files with changed, missing and repeated bytes: an answer with one of three exit codes, and no panic.
+#[test]
+fn damaged_files_have_an_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path();
+    let mut mesh = cuboid([1, 1, 1]);
+    label(&mut mesh, &|_| 1);
+    tetgen(dir, &mesh);
+    let files = [
+        ("vtu", vtu(&tube()).into_bytes()),
+        ("msh", msh_2(&mesh).into_bytes()),
+        ("msh", msh_4(&mesh, false)),
+        ("msh", msh_4(&mesh, true)),
+        ("ele", std::fs::read(dir.join("m.ele")).expect("written")),
+    ];
+    // Linear congruential generator of Knuth.
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let mut names = Vec::new();
+    for (extension, bytes) in &files {
+        for i in 0..60 {
+            let mut damaged = bytes.clone();
+            for _ in 0..=random(3) {
+                let at = random(damaged.len());
+                match random(4) {
+                    0 => damaged.truncate(at.max(1)),
+                    1 => damaged[at] = random(256) as u8,
+                    2 => damaged[at] ^= 1 << random(8),
+                    _ => drop(damaged.splice(at..at, bytes[at.min(bytes.len() - 1)..].iter().copied().take(20))),
+                }
+            }
+            let name = format!("d{}_{i}.{extension}", names.len());
+            write(dir, &name, damaged);
+            std::fs::copy(dir.join("m.node"), dir.join(&name).with_extension("node")).expect("copied");
+            names.push(name);
+        }
+    }
+    write(dir, "list", names.join("\n"));
+    let (text, code) = run(dir, &["--list", "list"]);
+    assert!(!text.contains("panicked") && text.lines().count() == names.len() && code == Some(3), "{text}");
+    let answers = [": valid", ": NOT valid", ": unreadable"].map(|answer| text.matches(answer).count());
+    assert!(answers.iter().all(|&count| count > 0) && answers.iter().sum::<usize>() == names.len(), "{answers:?}");
 }
