@@ -5,8 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Source folders of the packages, from the repository's root.
-const PACKAGES: [&str; 6] =
-    ["src", "crates/mesh/src", "crates/skeleton/src", "crates/network/src", "crates/tet/src", "crates/io/src"];
+const PACKAGES: [&str; 7] = [
+    "src",
+    "crates/mesh/src",
+    "crates/skeleton/src",
+    "crates/network/src",
+    "crates/tet/src",
+    "crates/io/src",
+    "crates/verify/src",
+];
 
 /// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.
 const LAYERS: [(&str, u32); 13] = [
@@ -129,6 +136,17 @@ fn the_reader_of_imports_sees_groups() {
     let found =
         modules_named("use crate::{mesh::{A, B}, tet::X};\nuse crate::io; // crate::cli\nanastomesh::cli::run()");
     assert_eq!(found, ["mesh", "tet", "io", "cli"]);
+}
+
+/// The second checker must not repeat faults of the mesher.
+#[test]
+fn the_second_checker_depends_on_no_crate_of_the_mesher() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/verify/Cargo.toml");
+    let text = std::fs::read_to_string(manifest).expect("a readable manifest");
+    let names: Vec<&str> =
+        text.lines().filter_map(|line| line.split_once(['.', ' ', '=']).map(|(name, _)| name)).collect();
+    let shared: Vec<_> = names.iter().filter(|name| name.starts_with("anastomesh") || **name == "robust").collect();
+    assert!(names.contains(&"num-bigint") && shared.is_empty(), "dependencies on the mesher: {shared:?}");
 }
 
 #[test]

@@ -1,0 +1,147 @@
+//! Conditions on the boundary as a surface: closed, manifold, embedded, with the expected components and genera.
+
+use crate::crossing::{crossings, winding};
+use crate::exact::volume_sign;
+use crate::faces::Boundary;
+use crate::mesh::Mesh;
+use crate::report::{Condition as C, Ids, Report};
+use crate::sets::Sets;
+
+/// Checks the boundary, and compares it with the expectation of the file.
+pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
+    let count = boundary.faces.len();
+    let (mut surfaces, mut fans) = (Sets::new(count), Sets::new(3 * count));
+    let edges = edges(&boundary.faces);
+    let mut wrong = Vec::new();
+    for group in edges.chunk_by(|a, b| a.ends == b.ends) {
+        for pair in group.windows(2) {
+            surfaces.join(pair[0].corner / 3, pair[1].corner / 3);
+            for end in 0..2 {
+                fans.join(pair[0].corner_at(end), pair[1].corner_at(end));
+            }
+        }
+        if group.len() != 2 || group[0].is_reversed == group[1].is_reversed {
+            wrong.push(group[0].ends);
+        }
+    }
+    report.add(C::BoundaryEdges, wrong.into_iter().map(Ids));
+    let several = several_fans(&boundary.faces, fans);
+    report.add(C::BoundaryFans, several);
+    let crossings = crossings(&mesh.points, &boundary.faces);
+    let shown = crossings.iter().map(|pair| pair.map(|i| Ids(boundary.faces[i as usize]).to_string()).join(" and "));
+    report.add(C::NoSelfIntersection, shown);
+    if let Some(expected) = &mesh.expected_loops {
+        let found = report.figures.components;
+        let differs = found != expected.len();
+        report.add(C::Components, differs.then(|| format!("expected {}, found {found}", expected.len())));
+    }
+    if report.holds(C::BoundaryEdges) && report.holds(C::BoundaryFans) {
+        let (surface, surface_count) = surfaces.numbered();
+        genera(mesh, boundary, &surface, surface_count, report);
+        if report.holds(C::NoSelfIntersection) {
+            nesting(mesh, boundary, &surface, surface_count, report);
+        }
+    }
+}
+
+/// Side of a boundary face.
+struct Edge {
+    ends: [u32; 2],
+    is_reversed: bool,
+    /// Corner of the face at which the side starts.
+    corner: u32,
+}
+
+impl Edge {
+    /// Corner of the face at the smaller (0) or larger end (1).
+    fn corner_at(&self, end: u32) -> u32 {
+        if (end == 1) == self.is_reversed { self.corner } else { self.corner / 3 * 3 + (self.corner + 1) % 3 }
+    }
+}
+
+fn edges(faces: &[[u32; 3]]) -> Vec<Edge> {
+    let corners = faces.as_flattened();
+    let edge = |corner: u32| {
+        let (a, b) = (corners[corner as usize], corners[(corner / 3 * 3 + (corner + 1) % 3) as usize]);
+        Edge { ends: [a.min(b), a.max(b)], is_reversed: a > b, corner }
+    };
+    let mut edges: Vec<Edge> = (0..corners.len() as u32).map(edge).collect();
+    edges.sort_unstable_by_key(|edge| (edge.ends, edge.corner));
+    edges
+}
+
+/// Vertices whose faces form more than one fan.
+fn several_fans(faces: &[[u32; 3]], fans: Sets) -> Vec<u32> {
+    let (fan, _) = fans.numbered();
+    let mut at: Vec<(u32, u32)> = faces.as_flattened().iter().copied().zip(fan).collect();
+    at.sort_unstable();
+    at.dedup();
+    at.chunk_by(|a, b| a.0 == b.0).filter(|fans| fans.len() > 1).map(|fans| fans[0].0).collect()
+}
+
+/// Checks the genus of each component.
+fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
+    let mut vertices: Vec<(u32, u32)> =
+        boundary.faces.iter().zip(surface).flat_map(|(f, &s)| f.map(|v| (s, v))).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let mut euler = vec![0_i64; count as usize];
+    for &(s, _) in &vertices {
+        euler[s as usize] += 2;
+    }
+    // Each face has a half of three edges.
+    for &s in surface {
+        euler[s as usize] -= 1;
+    }
+    // Here `euler` is twice the characteristic, 2 (2 - 2g).
+    report.figures.genus = euler.iter().map(|e| (4 - e) / 4).sum();
+    let Some(expected) = &mesh.expected_loops else { return };
+    let mut owner = vec![0; count as usize];
+    surface.iter().zip(&boundary.component).for_each(|(&s, &component)| owner[s as usize] = component);
+    let mut found: Vec<Vec<i64>> = vec![Vec::new(); report.figures.components];
+    owner.iter().zip(&euler).for_each(|(&component, e)| found[component as usize].push((4 - e) / 4));
+    let mut violations: Vec<String> = Vec::new();
+    for (component, genera) in found.iter().enumerate().filter(|(_, genera)| genera.len() != 1) {
+        violations.push(format!("component {component} has {} boundary surfaces", genera.len()));
+    }
+    let (mut found, mut expected) = (found.concat(), expected.clone());
+    found.sort_unstable();
+    expected.sort_unstable();
+    if violations.is_empty() && found != expected {
+        let differs = found.iter().zip(&expected).find(|(f, e)| f != e);
+        let [f, e] = differs.map_or([found.len() as i64, expected.len() as i64], |(&f, &e)| [f, e]);
+        violations.push(format!("expected {e}, found {f}"));
+    }
+    report.add(C::Loops, violations);
+}
+
+/// Checks that every point of space is covered at most once. An outer surface must lie outside all others, and a cavity
+/// inside exactly one.
+fn nesting(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
+    let corners = |i: usize| boundary.faces[i].map(|v| mesh.points[v as usize]);
+    let mut own: Vec<Vec<[[f64; 3]; 3]>> = vec![Vec::new(); count as usize];
+    surface.iter().enumerate().for_each(|(i, &s)| own[s as usize].push(corners(i)));
+    let boxes: Vec<[[f64; 2]; 3]> = own.iter().map(|triangles| bounds(triangles)).collect();
+    let is_in = |p: &[f64; 3], b: &[[f64; 2]; 3]| (0..3).all(|k| b[k][0] <= p[k] && p[k] <= b[k][1]);
+    let mut wrong = Vec::new();
+    for (s, triangles) in own.iter().enumerate() {
+        let point = triangles[0][0];
+        let others = (0..own.len()).filter(|&other| other != s && is_in(&point, &boxes[other]));
+        let depth: i32 = others.map(|other| winding(&point, &own[other])).sum();
+        if depth != i32::from(volume_sign(triangles) < 0) {
+            let first = surface.iter().position(|&own| own as usize == s).unwrap_or_default();
+            wrong.push(format!("surface of face {}", Ids(boundary.faces[first])));
+        }
+    }
+    report.add(C::NoNesting, wrong);
+}
+
+fn bounds(triangles: &[[[f64; 3]; 3]]) -> [[f64; 2]; 3] {
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for point in triangles.iter().flatten() {
+        for k in 0..3 {
+            bounds[k] = [bounds[k][0].min(point[k]), bounds[k][1].max(point[k])];
+        }
+    }
+    bounds
+}

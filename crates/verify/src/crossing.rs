@@ -1,0 +1,177 @@
+//! Exact intersections of triangles, and winding numbers of points.
+
+use crate::exact::{orient_2d, orient_3d};
+use crate::tree::Tree;
+
+type Point = [f64; 3];
+
+/// Returns the pairs of triangles that intersect outside their common vertices and edges. Degenerate triangles are
+/// ignored.
+pub fn crossings(points: &[Point], faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let boxes = faces.iter().map(|face| {
+        let [a, b, c] = face.map(|v| points[v as usize]);
+        [0, 1, 2].map(|k| [a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k])])
+    });
+    let mut found = Vec::new();
+    let tree = Tree::new(boxes.collect());
+    tree.pairs(&mut |i, j| {
+        if intersect(points, faces[i as usize], faces[j as usize]) {
+            found.push([i.min(j), i.max(j)]);
+        }
+    });
+    found.sort_unstable();
+    found
+}
+
+fn intersect(points: &[Point], s: [u32; 3], t: [u32; 3]) -> bool {
+    let at = |v: u32| &points[v as usize];
+    let (Some(s_axes), Some(t_axes)) = (axes(s.map(at)), axes(t.map(at))) else { return false };
+    let common: Vec<u32> = s.into_iter().filter(|v| t.contains(v)).collect();
+    let sides = |face: [u32; 3]| [0, 1, 2].map(|i| [at(face[i]), at(face[(i + 1) % 3])]);
+    match common[..] {
+        [] => {
+            sides(s).into_iter().any(|side| meets(side, t.map(at), t_axes))
+                || sides(t).into_iter().any(|side| meets(side, s.map(at), s_axes))
+        }
+        // Beyond a common vertex, the first exit is through the opposite side of one triangle.
+        [v] => {
+            let opposite = |face: [u32; 3]| {
+                let i = face.iter().position(|&w| w == v).unwrap_or_default();
+                [at(face[(i + 1) % 3]), at(face[(i + 2) % 3])]
+            };
+            meets(opposite(s), t.map(at), t_axes) || meets(opposite(t), s.map(at), s_axes)
+        }
+        // Beyond a common edge, only triangles folded onto each other intersect.
+        [u, v] => {
+            let apex = |face: [u32; 3]| at(face.into_iter().find(|w| ![u, v].contains(w)).unwrap_or(u));
+            let (p, q) = (apex(s), apex(t));
+            let turn = |r: &Point| orient_2d(flat(at(u), s_axes), flat(at(v), s_axes), flat(r, s_axes));
+            orient_3d(at(u), at(v), p, q) == 0 && turn(p) == turn(q)
+        }
+        _ => true,
+    }
+}
+
+/// Axes of a projection in which the triangle has an area; `None` if it is degenerate.
+fn axes(t: [&Point; 3]) -> Option<[usize; 2]> {
+    [[0, 1], [1, 2], [2, 0]]
+        .into_iter()
+        .find(|&axes| orient_2d(flat(t[0], axes), flat(t[1], axes), flat(t[2], axes)) != 0)
+}
+
+fn flat(p: &Point, axes: [usize; 2]) -> [f64; 2] {
+    axes.map(|k| p[k])
+}
+
+/// True if a segment and a triangle have a common point.
+fn meets([p, q]: [&Point; 2], t: [&Point; 3], axes: [usize; 2]) -> bool {
+    let [a, b, c] = t;
+    let (above, below) = (orient_3d(a, b, c, p), orient_3d(a, b, c, q));
+    if above * below > 0 {
+        return false;
+    }
+    if above == 0 && below == 0 {
+        return meets_in_plane([p, q].map(|p| flat(p, axes)), t.map(|p| flat(p, axes)));
+    }
+    let turns = [orient_3d(p, q, a, b), orient_3d(p, q, b, c), orient_3d(p, q, c, a)];
+    turns.iter().all(|&turn| turn >= 0) || turns.iter().all(|&turn| turn <= 0)
+}
+
+fn meets_in_plane([p, q]: [[f64; 2]; 2], t: [[f64; 2]; 3]) -> bool {
+    let turn = orient_2d(t[0], t[1], t[2]);
+    let contains = |p| (0..3).all(|i| orient_2d(t[i], t[(i + 1) % 3], p) * turn >= 0);
+    let cross = |i: usize| {
+        let (a, b) = (t[i], t[(i + 1) % 3]);
+        let [c, d, e, f] = [orient_2d(p, q, a), orient_2d(p, q, b), orient_2d(a, b, p), orient_2d(a, b, q)];
+        // Collinear sides are left to other sides and to the ends.
+        c * d <= 0 && e * f <= 0 && (c, d) != (0, 0)
+    };
+    contains(p) || contains(q) || (0..3).any(cross)
+}
+
+/// Returns how often a closed surface winds around a point that is not on it.
+pub fn winding(p: &Point, triangles: &[[Point; 3]]) -> i32 {
+    triangles.iter().map(|t| passed(p, t)).sum()
+}
+
+/// Signed passages of a ray in direction +x through a triangle: 1 outwards, -1 inwards. The ray starts at a point moved
+/// by an infinitesimal in y, and by a smaller one in z.
+fn passed(p: &Point, t: &[Point; 3]) -> i32 {
+    let beyond = |k: usize, is_above: bool| t.iter().all(|q| if is_above { q[k] > p[k] } else { q[k] < p[k] });
+    if beyond(0, false) || (1..3).any(|k| beyond(k, true) || beyond(k, false)) {
+        return 0;
+    }
+    let [a, b, c] = [0, 1, 2].map(|i| flat(&t[i], [1, 2]));
+    let p_flat = flat(p, [1, 2]);
+    let turns = [turn(a, b, p_flat), turn(b, c, p_flat), turn(c, a, p_flat)];
+    if turns[0] != turns[1] || turns[1] != turns[2] || turns[0] == 0 {
+        return 0;
+    }
+    // The outward normal has the sign of the turn along x. The ray passes if the point lies on the inner side.
+    if orient_3d(&t[0], &t[1], &t[2], p) * turns[0] < 0 { turns[0] } else { 0 }
+}
+
+/// Side of a line on which the moved point lies: of its infinitesimals, the first that matters decides.
+fn turn(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> i32 {
+    let compare = |x: f64, y: f64| i32::from(x > y) - i32::from(x < y);
+    match orient_2d(a, b, p) {
+        // The derivative of the area in y is a.z - b.z, in z it is b.y - a.y.
+        0 if a[1] != b[1] => compare(a[1], b[1]),
+        0 => compare(b[0], a[0]),
+        sign => sign,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [Point; 3] = [[0., 0., 0.], [2., 0., 0.], [0., 2., 0.]];
+
+    fn pair(other: [Point; 3]) -> bool {
+        let points: Vec<Point> = A.into_iter().chain(other).collect();
+        let number = |p: &Point| points.iter().position(|q| q == p).expect("a point") as u32;
+        !crossings(&points, &[A, other].map(|t| [0, 1, 2].map(|i| number(&t[i])))).is_empty()
+    }
+
+    #[test]
+    fn pairs_of_triangles() {
+        let [a, b, c] = A;
+        // Without a common vertex: piercing, touching, coplanar, apart.
+        assert!(pair([[0.5, 0.5, -1.], [0.5, 0.5, 1.], [3., 3., 1.]]));
+        assert!(pair([[0.5, 0.5, 0.], [0.5, 0.5, 1.], [3., 3., 1.]]));
+        assert!(pair([[0.1, 0.1, 0.], [0.2, 0.1, 0.], [0.1, 0.2, 0.]]));
+        assert!(pair([[-1., -1., 0.], [9., -1., 0.], [-1., 9., 0.]]));
+        assert!(pair([[-1., 0.5, 0.], [3., 0.5, 0.], [1., 0.6, 0.]]));
+        assert!(pair([[1., 0., 0.], [1., -1., 0.], [1., -1., 1.]]));
+        assert!(!pair([[0.5, 0.5, 1e-300], [0.5, 0.5, 1.], [3., 3., 1.]]));
+        assert!(!pair([[2., 2., 0.], [3., 2., 0.], [2., 3., 0.]]));
+        // With a common vertex.
+        assert!(!pair([a, [-1., 0., 0.], [0., -1., 0.]]));
+        assert!(!pair([a, [1., 0., 1.], [0., 1., 1.]]));
+        assert!(pair([a, [1., 1., -1.], [1., 1., 1.]]));
+        assert!(pair([a, [1., 0.5, 0.], [0.5, 1., 1.]]));
+        assert!(pair([a, [3., 0., 0.], [0., 0., 1.]]));
+        // With a common edge.
+        assert!(!pair([b, a, [0., 0., 1.]]));
+        assert!(!pair([b, a, [0., -1., 0.]]));
+        assert!(pair([b, a, [0.3, 0.3, 0.]]));
+        assert!(!pair([b, a, [0.3, 0.3, 1e-300]]));
+        assert!(pair([c, b, a]));
+    }
+
+    #[test]
+    fn winding_numbers_of_an_octahedron() {
+        let p = [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+        let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+        let outer: Vec<[Point; 3]> = faces.map(|f: [usize; 3]| f.map(|i| p[i])).to_vec();
+        let inner: Vec<[Point; 3]> = outer.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        // The rays of these points pass through vertices and edges.
+        for inside in [[0., 0., 0.], [-0.5, 0., 0.], [0.2, 0.2, 0.], [-0.2, 0., 0.3]] {
+            assert_eq!((winding(&inside, &outer), winding(&inside, &inner)), (1, -1), "{inside:?}");
+        }
+        for outside in [[-2., 0., 0.], [2., 0., 0.], [-2., 0.5, 0.], [-1., 1., 0.], [-0.9, 0., 0.2], [-1., 0., 1.]] {
+            assert_eq!((winding(&outside, &outer), winding(&outside, &inner)), (0, 0), "{outside:?}");
+        }
+    }
+}

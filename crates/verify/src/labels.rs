@@ -1,0 +1,221 @@
+//! Conditions on labelled triangles, patches and caps.
+
+use crate::faces::{Boundary, is_odd, key};
+use crate::mesh::Mesh;
+use crate::report::{Condition as C, Ids, Report};
+use crate::sets::Sets;
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::PI;
+
+/// Id of the wall's patch.
+pub const WALL: i64 = 1;
+/// Maximum distance of a cap's vertices from their middle plane, in radii.
+const FLATNESS: f64 = 1e-9;
+/// Maximum relative change of a number rounded to 32 bits.
+const ROUNDING: f64 = 6e-8;
+/// Beginnings of names of patches that consist of flat discs.
+const FLAT: [&str; 3] = ["inlet", "outlet", "missing"];
+
+type Vector = [f64; 3];
+
+/// Checks the labels of a mesh that has them.
+pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
+    if mesh.triangles.is_empty() {
+        return;
+    }
+    let are_inside = mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.points.len());
+    report.add(C::LabelsMatchBoundary, differences(mesh, boundary).into_iter().map(Ids));
+    if let Some(expected) = &mesh.expected_terminals {
+        let mut found: Vec<i64> = mesh.caps.iter().map(|cap| cap.node).collect();
+        let mut missing = expected.clone();
+        found.retain(|node| missing.iter().position(|m| m == node).map(|at| missing.swap_remove(at)).is_none());
+        report.add(C::CapPerTerminal, missing.iter().chain(&found).map(|node| format!("node {node}")));
+    }
+    if !mesh.patches.is_empty() && are_inside {
+        patches(mesh, report);
+        caps(mesh, report);
+    }
+}
+
+/// Boundary faces without a label, and labelled triangles that are no boundary face, repeated or reversed. A mesh without
+/// an expectation may label interior faces.
+fn differences(mesh: &Mesh, boundary: &Boundary) -> Vec<[u32; 3]> {
+    let may_be_inside = mesh.expected_loops.is_none();
+    let is_allowed = |face: &[u32; 3]| may_be_inside && boundary.labelled_inside.binary_search(face).is_ok();
+    let entry = |&face: &[u32; 3]| (key(face), is_odd(face) && !mesh.is_undirected);
+    let mut real: Vec<_> = boundary.faces.iter().map(entry).collect();
+    let mut labelled: Vec<_> = mesh.triangles.iter().map(entry).filter(|(face, _)| !is_allowed(face)).collect();
+    real.sort_unstable();
+    labelled.sort_unstable();
+    let mut different = Vec::new();
+    let (mut real, mut labelled) = (real.into_iter().peekable(), labelled.into_iter().peekable());
+    while let Some(first) = real.peek().into_iter().chain(labelled.peek()).min().copied() {
+        let (a, b) = (real.next_if_eq(&first), labelled.next_if_eq(&first));
+        if a.is_none() || b.is_none() {
+            different.push(first.0);
+        }
+    }
+    different.dedup();
+    different
+}
+
+fn patches(mesh: &Mesh, report: &mut Report) {
+    let (mut ids, mut names, mut with_caps) = (HashSet::new(), HashSet::new(), HashSet::from([WALL]));
+    let mut equal: Vec<i64> = Vec::new();
+    equal.extend(mesh.patches.iter().filter(|(id, _)| !ids.insert(*id)).map(|(id, _)| id));
+    equal.extend(mesh.patches.iter().filter(|(_, name)| !names.insert(name)).map(|(id, _)| id));
+    equal.extend(
+        mesh.caps.iter().filter(|cap| !with_caps.insert(cap.patch) || !ids.contains(&cap.patch)).map(|cap| cap.patch),
+    );
+    report.add(C::OwnPatch, equal.iter().map(|id| format!("patch {id}")));
+    let Some(terminals) = &mesh.expected_terminals else { return };
+    // Outlets that share a patch have no caps of their own: then every named patch is allowed.
+    let is_grouped = |(id, name): &(i64, String)| is_cap_name(name) && !with_caps.contains(id);
+    if !terminals.is_empty() && mesh.patches.iter().any(is_grouped) {
+        with_caps.extend(ids);
+    }
+    let unknown = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| !with_caps.contains(label));
+    report.add(C::WallOrCap, unknown.map(|(&face, label)| format!("patch {label} of face {}", Ids(face))));
+}
+
+fn is_cap_name(name: &str) -> bool {
+    FLAT.iter().any(|start| name.starts_with(start))
+}
+
+/// Checks the shapes of caps, and of patches that are named like caps.
+fn caps(mesh: &Mesh, report: &mut Report) {
+    let mut triangles: HashMap<i64, Vec<[u32; 3]>> = HashMap::new();
+    for (&face, &label) in mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label != WALL) {
+        triangles.entry(label).or_default().push(face);
+    }
+    let mut violations: [Vec<String>; 5] = Default::default();
+    let described: HashSet<i64> = mesh.caps.iter().map(|cap| cap.patch).collect();
+    for cap in &mesh.caps {
+        let own = triangles.get(&cap.patch).map_or(&[][..], Vec::as_slice);
+        let holds = Shape::of(&mesh.points, own, cap.center, Some(cap.normal), cap.radius).compare();
+        let holds = [discs(own).len() == 1 && is_disc(own), holds[0], holds[1], holds[2], holds[3]];
+        let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
+        wrong.for_each(|(list, _)| list.push(format!("patch {}", cap.patch)));
+    }
+    for (id, name) in &mesh.patches {
+        if described.contains(id) || !is_cap_name(name) {
+            continue;
+        }
+        for part in discs(triangles.get(id).map_or(&[][..], Vec::as_slice)) {
+            let center = mesh.points[part[0][0] as usize];
+            let corners = part.iter().flatten().flat_map(|&v| minus(mesh.points[v as usize], center));
+            let unit = corners.map(f64::abs).fold(0.0, f64::max);
+            let shape = Shape::of(&mesh.points, &part, center, None, unit);
+            let holds = [is_disc(&part), shape.is_flat((shape.area / PI).sqrt())];
+            let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
+            wrong.for_each(|(list, _)| list.push(format!("patch {id} at face {}", Ids(part[0]))));
+        }
+    }
+    let conditions = [C::CapDisc, C::CapFlat, C::CapCentred, C::CapArea, C::CapNormal];
+    let applicable = if mesh.caps.is_empty() { 2 } else { 5 };
+    for (condition, list) in conditions.into_iter().zip(violations).take(applicable) {
+        report.add(condition, list);
+    }
+}
+
+struct Shape {
+    area: f64,
+    /// Distance of the centroid from the given centre.
+    off_centre: f64,
+    /// Half the extent along the normal.
+    height: f64,
+    /// Part of the extent that rounding of coordinates to 32 bits explains; 0 if they have more bits.
+    rounding: f64,
+    faces_along: bool,
+}
+
+impl Shape {
+    /// Shape of triangles, with all lengths in a unit; without a normal, that of their mean.
+    fn of(points: &[Vector], triangles: &[[u32; 3]], center: Vector, normal: Option<Vector>, unit: f64) -> Self {
+        let corners = |t: &[u32; 3]| t.map(|v| minus(points[v as usize], center).map(|x| x / unit));
+        let areas: Vec<Vector> = triangles.iter().map(|t| area(corners(t))).collect();
+        let sum = areas.iter().fold([0.0; 3], |sum, a| [0, 1, 2].map(|k| sum[k] + a[k]));
+        let normal = normal.unwrap_or(sum);
+        let length = dot(normal, normal).sqrt();
+        let normal = normal.map(|x| x / length);
+        let (mut total, mut moment, mut range) = (0.0, [0.0; 3], [f64::INFINITY, f64::NEG_INFINITY]);
+        for (t, a) in triangles.iter().zip(&areas) {
+            let (a, corners) = (dot(*a, *a).sqrt(), corners(t));
+            total += a;
+            for p in corners {
+                moment = [0, 1, 2].map(|k| moment[k] + a / 3.0 * p[k]);
+                let height = dot(p, normal);
+                range = [range[0].min(height), range[1].max(height)];
+            }
+        }
+        let vertices = || triangles.iter().flatten().map(|&v| points[v as usize]);
+        let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
+        let shift = |p: Vector| ROUNDING * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
+        Self {
+            area: total,
+            off_centre: dot(moment, moment).sqrt() / total,
+            height: (range[1] - range[0]) / 2.0,
+            rounding: if is_rounded { vertices().map(shift).fold(0.0, f64::max) } else { 0.0 },
+            faces_along: !areas.is_empty() && areas.iter().all(|&a| dot(a, normal) > 0.0),
+        }
+    }
+
+    /// False without triangles.
+    fn is_flat(&self, radius: f64) -> bool {
+        self.area > 0.0 && self.height <= FLATNESS * radius + self.rounding
+    }
+
+    /// Flatness, centre, area and direction of a described cap, whose radius is the unit.
+    fn compare(&self) -> [bool; 4] {
+        [self.is_flat(1.0), self.off_centre <= 0.1, (self.area - PI).abs() <= 0.05 * PI, self.faces_along]
+    }
+}
+
+/// Vector along the normal of a triangle, as long as its area.
+fn area([a, b, c]: [Vector; 3]) -> Vector {
+    let (u, v) = (minus(b, a), minus(c, a));
+    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]].map(|x| x / 2.0)
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Directed edges of triangles with their triangle, sorted by the edge without direction.
+fn edges(triangles: &[[u32; 3]]) -> Vec<([u32; 2], bool, u32)> {
+    let sides = triangles.iter().zip(0..).flat_map(|(t, i)| [0, 1, 2].map(|k| (t[k], t[(k + 1) % 3], i)));
+    let mut edges: Vec<_> = sides.map(|(a, b, i)| ([a.min(b), a.max(b)], a > b, i)).collect();
+    edges.sort_unstable();
+    edges
+}
+
+/// Parts of triangles that are connected by edges.
+fn discs(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
+    let mut sets = Sets::new(triangles.len());
+    edges(triangles).windows(2).filter(|pair| pair[0].0 == pair[1].0).for_each(|pair| sets.join(pair[0].2, pair[1].2));
+    let (part, count) = sets.numbered();
+    let mut parts = vec![Vec::new(); count as usize];
+    triangles.iter().zip(part).for_each(|(&t, part)| parts[part as usize].push(t));
+    parts
+}
+
+/// True if connected triangles form a disc: Euler number 1, and a rim that passes each of its vertices once.
+fn is_disc(triangles: &[[u32; 3]]) -> bool {
+    let edges = edges(triangles);
+    let (mut count, mut rim, mut is_surface) = (0, Vec::new(), true);
+    for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        count += 1;
+        match group {
+            [(ends, is_reversed, _)] => rim.push(ends[usize::from(*is_reversed)]),
+            [a, b] => is_surface &= a.1 != b.1,
+            _ => is_surface = false,
+        }
+    }
+    let vertices: HashSet<u32> = triangles.iter().flatten().copied().collect();
+    let starts: HashSet<u32> = rim.iter().copied().collect();
+    is_surface && !rim.is_empty() && starts.len() == rim.len() && vertices.len() + triangles.len() == count + 1
+}

@@ -1,0 +1,107 @@
+//! Second checker of tetrahedral meshes. It shares no code with the mesher and its checker. Readers, exact arithmetic,
+//! topology and geometry are its own, so that no fault hides in both.
+//!
+//! ```
+//! use anastomesh_verify::{Demands, Mesh, verify};
+//!
+//! let points = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
+//! let mut mesh = Mesh { points, tets: vec![[0, 1, 2, 3]], ..Mesh::default() };
+//! assert!(verify(&mesh, &Demands::default()).is_valid());
+//! mesh.tets[0].swap(0, 1);
+//! let report = verify(&mesh, &Demands::default());
+//! assert_eq!(report.violated().next().map(|found| found.condition.name()), Some("positive_tets"));
+//! ```
+
+mod boundary;
+pub mod certificate;
+mod crossing;
+mod exact;
+mod faces;
+mod labels;
+mod mesh;
+mod msh;
+mod network;
+mod report;
+mod sets;
+mod surface;
+mod tetgen;
+mod tree;
+mod vtu;
+mod xml;
+
+pub use mesh::{Cap, Mesh, Read, ReadError};
+pub use network::Cone;
+pub use report::{Condition, Figures, Outcome, Report};
+pub use surface::Soup;
+
+use std::path::{Path, PathBuf};
+
+/// Conditions beyond those of the mesh alone.
+#[derive(Default)]
+pub struct Demands {
+    /// Surface whose triangles must be boundary faces.
+    pub surface: Option<Soup>,
+    /// Vessels near which the wall must be, and the tolerance in radii.
+    pub network: Option<(Vec<Cone>, f64)>,
+}
+
+/// Checks all conditions that apply to a mesh.
+pub fn verify(mesh: &Mesh, demands: &Demands) -> Report {
+    let mut report = Report::default();
+    let Some(boundary) = faces::check(mesh, &mut report) else { return report };
+    boundary::check(mesh, &boundary, &mut report);
+    labels::check(mesh, &boundary, &mut report);
+    if let Some(surface) = &demands.surface {
+        surface::check(surface, mesh, &boundary, &mut report);
+    }
+    if let Some((cones, tolerance)) = &demands.network {
+        network::check(cones, *tolerance, mesh, &boundary, &mut report);
+    }
+    report
+}
+
+/// Reads a mesh: VTU, MSH 4.1 or 2.2, or TetGen's files by the name of the `.ele` file.
+///
+/// # Errors
+/// A file that is missing, damaged, or has cells other than tetrahedra and triangles.
+pub fn read_mesh(path: &Path) -> Read<Mesh> {
+    match extension(path) {
+        "vtu" => vtu::read(&std::fs::read(path)?),
+        "msh" | "msh2" => msh::read(&std::fs::read(path)?),
+        "ele" => tetgen::read(path),
+        other => mesh::fail(format!("meshes '.{other}' are not supported; use .vtu, .msh or .ele")),
+    }
+}
+
+/// Reads a surface: OFF, STL or PLY.
+///
+/// # Errors
+/// A file that is missing, damaged, or has faces other than triangles.
+pub fn read_surface(path: &Path) -> Read<Soup> {
+    read_named(path, surface::read)
+}
+
+/// Reads a network: SWC, or VTP with an array whose name contains `radius`.
+///
+/// # Errors
+/// A file that is missing, damaged or has no vessels.
+pub fn read_network(path: &Path) -> Read<Vec<Cone>> {
+    read_named(path, network::read)
+}
+
+/// Result of a reader, with the path in its error.
+fn read_named<T>(path: &Path, reader: fn(&Path, &[u8]) -> Read<T>) -> Read<T> {
+    let bytes = std::fs::read(path).map_err(ReadError::from);
+    bytes.and_then(|bytes| reader(path, &bytes)).map_err(|e| ReadError(format!("{}: {e}", path.display())))
+}
+
+/// Returns the files that make a mesh: the file itself, and those beside it in TetGen's format.
+pub fn files_of(path: &Path) -> Vec<PathBuf> {
+    let beside = ["node", "face"].map(|e| path.with_extension(e));
+    let beside = beside.into_iter().filter(|other| extension(path) == "ele" && other.exists());
+    std::iter::once(path.to_owned()).chain(beside).collect()
+}
+
+fn extension(path: &Path) -> &str {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default()
+}

@@ -1,0 +1,97 @@
+//! Mesh as read from a file, before any check.
+
+use std::fmt;
+use std::path::Path;
+
+/// Tetrahedra with labelled triangles, as in the file. Vertices may be out of range.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Positions, in the unit of the file.
+    pub points: Vec<[f64; 3]>,
+    /// Vertices of each tetrahedron.
+    pub tets: Vec<[u32; 4]>,
+    /// Vertices of each labelled triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// True if labelled triangles may have either direction, as in TetGen's files.
+    pub is_undirected: bool,
+    /// Patch of each labelled triangle.
+    pub labels: Vec<i64>,
+    /// Ids and names of patches.
+    pub patches: Vec<(i64, String)>,
+    /// Caps of terminals, where the file describes them.
+    pub caps: Vec<Cap>,
+    /// Number of independent loops of each component of the network, where the file stores it.
+    pub expected_loops: Option<Vec<i64>>,
+    /// Nodes of the network that have a cap, where the file stores them.
+    pub expected_terminals: Option<Vec<i64>>,
+}
+
+/// Flat disc at a terminal of the network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cap {
+    /// Id of its patch.
+    pub patch: i64,
+    /// Node of the network.
+    pub node: i64,
+    /// Position of the node.
+    pub center: [f64; 3],
+    /// Unit vector out of the mesh.
+    pub normal: [f64; 3],
+    /// Radius of the vessel.
+    pub radius: f64,
+}
+
+/// Reason why a file cannot be read.
+#[derive(Debug)]
+pub struct ReadError(pub(crate) String);
+
+impl ReadError {
+    /// Error of the operating system for a file.
+    pub fn of_file(path: &Path, error: &std::io::Error) -> Self {
+        Self(format!("{}: {error}", path.display()))
+    }
+}
+
+impl From<std::io::Error> for ReadError {
+    fn from(error: std::io::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+/// Result of a reader.
+pub type Read<T> = Result<T, ReadError>;
+
+/// Error with this reason.
+pub(crate) fn fail<T>(reason: impl Into<String>) -> Read<T> {
+    Err(ReadError(reason.into()))
+}
+
+/// Vertex index of a file; indices that no mesh can have become the largest number.
+pub(crate) fn index(number: i64) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+/// Words of a text as numbers; `None` at the end or for another word.
+pub(crate) fn next<'a, T: std::str::FromStr>(words: &mut impl Iterator<Item = &'a str>) -> Option<T> {
+    words.next().and_then(|word| word.parse().ok())
+}
+
+/// The next `N` numbers of a text.
+pub(crate) fn next_n<'a, T, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Option<[T; N]>
+where
+    T: std::str::FromStr + Copy + Default,
+{
+    let mut numbers = [T::default(); N];
+    for number in &mut numbers {
+        *number = next(words)?;
+    }
+    Some(numbers)
+}

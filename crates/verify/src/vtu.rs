@@ -1,0 +1,81 @@
+//! Reader of VTU files.
+
+use crate::mesh::{Cap, Mesh, Read, fail, index};
+use crate::xml::{Numbers, VtkFile};
+
+/// VTK's cell types.
+const TRIANGLE: i64 = 5;
+const TETRAHEDRON: i64 = 10;
+/// Cells of dimension 0 and 1, which are ignored: vertex, poly-vertex, line, polyline.
+const THIN: [i64; 4] = [1, 2, 3, 4];
+/// Cell arrays with patches, in order of preference.
+const LABELS: [&str; 5] = ["patch", "PatchId", "gmsh:physical", "CellEntityIds", "ModelFaceID"];
+
+/// Reads a mesh of one piece.
+pub fn read(bytes: &[u8]) -> Read<Mesh> {
+    let file = VtkFile::parse(bytes)?;
+    if file.kind != "UnstructuredGrid" || file.pieces != 1 {
+        return fail(format!("{} of {} pieces instead of an unstructured grid of one", file.kind, file.pieces));
+    }
+    let mut mesh = Mesh { points: file.required("Points", "")?.real().as_chunks().0.to_vec(), ..Mesh::default() };
+    let names = file.names("CellData");
+    let labels = match LABELS.iter().find(|label| names.contains(label)) {
+        Some(label) => Some(file.required("CellData", label)?.whole()?),
+        None => None,
+    };
+    cells(&file, &mut mesh, labels.as_deref())?;
+    notes(&file, &mut mesh)?;
+    Ok(mesh)
+}
+
+fn cells(file: &VtkFile, mesh: &mut Mesh, labels: Option<&[i64]>) -> Read<()> {
+    let of = |name| file.required("Cells", name)?.whole();
+    let (connectivity, ends, types) = (of("connectivity")?, of("offsets")?, of("types")?);
+    if ends.len() != types.len() || labels.is_some_and(|labels| labels.len() != types.len()) {
+        return fail("arrays of cells differ in length");
+    }
+    let mut start = 0;
+    for (i, (&kind, &end)) in types.iter().zip(&ends).enumerate() {
+        let end = usize::try_from(end).unwrap_or(usize::MAX);
+        let Some(vertices) = connectivity.get(start..end) else { return fail(format!("cell {i} has a bad offset")) };
+        start = end;
+        match (kind, vertices) {
+            (TETRAHEDRON, &[a, b, c, d]) => mesh.tets.push([a, b, c, d].map(index)),
+            (TRIANGLE, &[a, b, c]) => {
+                mesh.triangles.push([a, b, c].map(index));
+                mesh.labels.push(labels.map_or(0, |labels| labels[i]));
+            }
+            (kind, _) if THIN.contains(&kind) => {}
+            _ => return fail(format!("cell {i} of type {kind} with {} vertices is not supported", vertices.len())),
+        }
+    }
+    Ok(())
+}
+
+/// Field arrays that `anastomesh` writes: names of patches, caps and the expectation.
+fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
+    let whole = |name| match file.array("FieldData", name)? {
+        Some(numbers) => numbers.whole().map(Some),
+        None => Ok(None),
+    };
+    if let Some(bytes) = whole("patch_names")? {
+        let bytes: Vec<u8> = bytes.into_iter().map(|b| b as u8).collect();
+        let names = bytes.strip_suffix(&[0]).unwrap_or(&bytes).split(|&b| b == 0).enumerate();
+        // The first is the name of the volume. Numbers without a patch have no name.
+        let named = names.skip(1).map(|(id, name)| (id as i64, String::from_utf8_lossy(name).into_owned()));
+        mesh.patches = named.filter(|(_, name)| !name.is_empty()).collect();
+    }
+    mesh.expected_loops = whole("expected_loops")?;
+    mesh.expected_terminals = whole("expected_terminals")?;
+    let Some(patches) = whole("cap_patch")? else { return Ok(()) };
+    let real = |name| file.required("FieldData", name).map(Numbers::real);
+    let (centers, normals, radii) = (real("cap_center")?, real("cap_normal")?, real("cap_radius")?);
+    let nodes = file.required("FieldData", "cap_node")?.whole()?;
+    let (centers, normals) = (centers.as_chunks().0, normals.as_chunks().0);
+    if [nodes.len(), centers.len(), normals.len(), radii.len()].iter().any(|&length| length != patches.len()) {
+        return fail("arrays of caps differ in length");
+    }
+    let cap = |i| Cap { patch: patches[i], node: nodes[i], center: centers[i], normal: normals[i], radius: radii[i] };
+    mesh.caps = (0..patches.len()).map(cap).collect();
+    Ok(())
+}
