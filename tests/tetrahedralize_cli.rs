@@ -330,7 +330,7 @@ fn several_surfaces_are_one_complex_with_regions() {
     let mesh = read_mesh(&out).expect("a mesh").volume;
     assert_eq!(mesh.patches.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["box", "core"]);
     assert_code(&check(&out), FINE);
-    let hole = [&["-o", out.to_str().expect("text"), "--json", "--hole", "0.5,0.5,0.4"]].concat();
+    let hole = ["-o", out.to_str().expect("text"), "--json", "--hole", "0.5,0.5,0.4"];
     let report = &json(&run("tetrahedralize", &[&outer, &inner], &hole))["report"];
     assert!((report["mesh"]["volume"].as_f64().expect("a number") - 63.0).abs() < 1e-9);
     let points = text(&folder, "a.node", "1 3 0 0\n0 0 0 0\n");
