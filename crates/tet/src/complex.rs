@@ -16,6 +16,9 @@ pub const GHOST: u32 = u32::MAX;
 /// First vertex of a deleted tetrahedron.
 const DEAD: u32 = u32::MAX - 1;
 
+/// Maximum tetrahedra to replace that are searched without sorting.
+const SMALL: usize = 24;
+
 /// No tetrahedron, no half-face.
 pub const NONE: u32 = u32::MAX;
 
@@ -477,11 +480,17 @@ impl Complex {
     /// Sorts the faces of `new` (as half-faces of `4 * position + face`) and the outer mates of `old` into pairs.
     fn collect_faces(&self, old: &[u32], new: &[[u32; 4]], faces: &mut Vec<FaceRecord>) -> bool {
         faces.clear();
+        let mut sorted = Vec::new();
+        if old.len() > SMALL {
+            sorted.extend_from_slice(old);
+            sorted.sort_unstable();
+        }
+        let inside = |t: u32| if sorted.is_empty() { old.contains(&t) } else { sorted.binary_search(&t).is_ok() };
         for &t in old {
             for i in 0..4 {
                 let half = 4 * t + i;
                 let mate = self.mate(half);
-                if !old.contains(&(mate >> 2)) {
+                if !inside(mate >> 2) {
                     faces.push(FaceRecord { key: face_key(self.face(half)), inner: false, half: mate });
                 }
             }

@@ -1,13 +1,14 @@
 //! Conforming complex: Delaunay tetrahedralization, then boundary recovery by several strategies.
 
+use super::attempts::recover_rest;
 use super::complex::Complex;
 use super::error::TetError;
 use super::input;
 use super::lattice;
 use super::options::{Interior, Refinement};
 use super::progress::Stage;
-use super::recover::exact::{Missing, RecoveryStrategy, recover_exact};
-use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
+use super::recover::exact::Missing;
+use super::recover::{self, RecoverySummary, Rule};
 use super::request::Request;
 use super::{contacts, delaunay, sized};
 use anastomesh_mesh::TriMesh;
@@ -33,7 +34,8 @@ pub(super) fn diagnosis(r: &Request, error: TetError) -> TetError {
 }
 
 /// Builds a complex with the whole surface: by flips and Steiner points, then by exact recovery of the rest.
-pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetError> {
+/// The third value is the number of points that are no Steiner points.
+pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary, usize), TetError> {
     let surface = r.surface;
     r.watch.report(Stage::Delaunay, 0, 1)?;
     let points = points(r)?;
@@ -41,7 +43,7 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetE
         .map_err(|e| name_interior(e, surface.points.len(), points.len() - 8))?;
     r.watch.report(Stage::Delaunay, 1, 1)?;
     let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
-        Ok(summary) => return Ok((complex, summary)),
+        Ok(summary) => return Ok((complex, summary, points.len())),
         Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
         Err(error) if error.is_stop() => return Err(error),
         Err(error) => return Err(diagnosis(r, error)),
@@ -50,80 +52,8 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary), TetE
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;
     let missing = Missing { edges: &edges, triangles: &triangles };
-    exactly(r, &points, &complex, missing)
-}
-
-/// Recovers the rest after flips, strategy by strategy.
-fn exactly(
-    r: &Request,
-    points: &[Point3],
-    complex: &Complex,
-    missing: Missing,
-) -> Result<(Complex, RecoverySummary), TetError> {
-    let flat = flat_height(&r.surface.points);
-    let single = flat_height_in_single(&r.surface.points);
-    let continue_recovery =
-        |ways: &[RecoveryStrategy]| continue_recovery(r, complex, points.len(), missing, (ways, flat));
-    let restart_with = |flat, ways: &[RecoveryStrategy]| restart(r, points, flat, ways);
-    let restart = |flat| restart_with(flat, &RecoveryStrategy::TURNED);
-    let rounded = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
-    let planes = lies_in_planes(r.surface, missing.edges, flat);
-    let turned = planes || lies_turned(r.surface, missing.edges, flat) || has_flat(complex, flat, missing.edges.len());
-    let first = match rounded {
-        Some(coarse) => restart(coarse),
-        None if turned => restart(flat),
-        None => continue_recovery(&RecoveryStrategy::FIRST),
-    };
-    let second = or_retry(first, || match single.filter(|_| rounded.is_none()) {
-        Some(coarse) => restart(coarse),
-        None if turned || rounded.is_some() => continue_recovery(&RecoveryStrategy::FIRST),
-        None => restart(flat),
-    });
-    let third = or_retry(second, || continue_recovery(&RecoveryStrategy::OTHERS));
-    or_retry(third, || restart_with(rounded.unwrap_or(flat), &RecoveryStrategy::LAST))
-}
-
-/// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
-fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
-    let flat = complex.real_tets().filter(|&t| !Rule::Thick(height).allows(complex, &complex.verts(t)));
-    flat.take(edges + 1).count() > edges
-}
-
-/// Tries another strategy after an error that may depend on the strategy.
-fn or_retry<T>(result: Result<T, TetError>, other: impl FnOnce() -> Result<T, TetError>) -> Result<T, TetError> {
-    if matches!(result, Err(TetError::Stuck { .. })) { other() } else { result }
-}
-
-/// Continues exact recovery in the complex left by flips, with the given strategies.
-fn continue_recovery(
-    r: &Request,
-    complex: &Complex,
-    points: usize,
-    missing: Missing,
-    ways: (&[RecoveryStrategy], f64),
-) -> Result<(Complex, RecoverySummary), TetError> {
-    let before = complex.points.len() - points;
-    let (complex, exact) = recover_exact(complex, r.surface, r.edges, missing, ways, r.watch)?;
-    let (missing_edges, missing_triangles) = (missing.edges.len(), missing.triangles.len());
-    Ok((complex, RecoverySummary { missing_edges, missing_triangles, steiner_points: before + exact.steiner_points }))
-}
-
-/// Restarts with flips that make nothing thinner than `flat`, then continues with the given strategies.
-fn restart(
-    r: &Request,
-    points: &[Point3],
-    flat: f64,
-    ways: &[RecoveryStrategy],
-) -> Result<(Complex, RecoverySummary), TetError> {
-    let mut complex = delaunay::delaunay_watched(points, r.watch)?;
-    match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
-        Ok(summary) => Ok((complex, summary)),
-        Err(TetError::NotRecovered { edges, triangles }) => {
-            let missing = Missing { edges: &edges, triangles: &triangles };
-            continue_recovery(r, &complex, points.len(), missing, (ways, flat))
-        }
-        Err(error) => Err(error),
-    }
+    let (complex, summary) = recover_rest(r, &points, complex, missing)?;
+    Ok((complex, summary, points.len()))
 }
 
 /// Points of the surface, interior points, and eight points around them.

@@ -9,6 +9,7 @@ use super::optimize::{OptimizeOptions, OptimizeReport, optimize_complex};
 use super::outside::without;
 use super::plc::LeftOut;
 use super::progress::Stage;
+use super::recover::remove_steiner_points;
 use super::regions::Regions;
 use super::request::{Filled, Request};
 use super::sized;
@@ -19,10 +20,12 @@ const OPTIMIZATION: usize = 15;
 /// Fills the requested volume and certifies the mesh.
 pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     sized::check(r.refinement, r.sizing, r.surface.points.len())?;
-    let (complex, recovery) = conforming(r)?;
+    let (complex, mut recovery, given) = conforming(r)?;
     r.watch.report(Stage::Carve, 0, 1)?;
-    let (mut carved, left_out) = carved(r, &complex).map_err(|error| diagnosis(r, error))?;
+    let (mut carved, left_out, steiner) = carved(r, &complex, given).map_err(|error| diagnosis(r, error))?;
     drop(complex);
+    let first = carved.points.len() - steiner;
+    recovery.steiner_points = remove_steiner_points(&mut carved, first, r.watch)?;
     let segments = without(r.segments, &left_out.segments);
     r.watch.report(Stage::Carve, 1, 1)?;
     let held = carve::hold_segments(&mut carved, &segments);
@@ -44,14 +47,22 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     Ok(Filled { mesh, places, left_out, regions, region_count, ignored_seeds, recovery, optimize, refine })
 }
 
-/// Carves a complex. Returns the filled part and the parts of the input outside of it.
-fn carved(r: &Request, complex: &Complex) -> Result<(Complex, LeftOut), TetError> {
+/// Carves a complex. Returns the filled part, the parts of the input outside of it, and the number of its points that are
+/// Steiner points: those with indices of at least `given`, which are its last.
+fn carved(r: &Request, complex: &Complex, given: usize) -> Result<(Complex, LeftOut, usize), TetError> {
     let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
     r.watch.ask()?;
     let left_out = LeftOut::find(complex, &sides, r.surface, r.segments)?;
     match left_out.as_error() {
         Some(error) if r.strict => Err(error),
-        _ => Ok((carve::carve(complex, r.surface, &sides), left_out)),
+        _ => {
+            let inside = complex.real_tets().filter(|&t| sides.is_inside(t));
+            let mut steiner: Vec<u32> =
+                inside.flat_map(|t| complex.verts(t)).filter(|&v| v as usize >= given).collect();
+            steiner.sort_unstable();
+            steiner.dedup();
+            Ok((carve::carve(complex, r.surface, &sides), left_out, steiner.len()))
+        }
     }
 }
 

@@ -40,7 +40,8 @@ impl Flipper {
     }
 
     /// Plans the 2-3 flip of a face, which exchanges it for the edge between its two apices. Returns the smallest score
-    /// of the new tetrahedra. `score` must be `None` for a tetrahedron that is not positive.
+    /// of the new tetrahedra. `score` must be `None` for a tetrahedron that is not positive. Its first three vertices are
+    /// a new face, the first two the new edge.
     ///
     /// # Errors
     /// [`Refusal::Frozen`] for a frozen or boundary face, [`Refusal::NotValid`] if the two tetrahedra are not convex.
@@ -84,8 +85,24 @@ impl Flipper {
         max_ring: usize,
         score: impl FnMut(&Complex, &[u32; 4]) -> Option<f64>,
     ) -> Result<f64, Refusal> {
+        self.plan_edge_if(c, [t, a, b], max_ring, |_, _| true, score)
+    }
+
+    /// As [`Flipper::plan_edge`], for edge `a, b` of `t` in `[t, a, b]`. Makes only the edges that `chord` accepts. The
+    /// first three vertices of each tetrahedron given to `score` are a new face.
+    ///
+    /// # Errors
+    /// See [`Refusal`].
+    pub fn plan_edge_if(
+        &mut self,
+        c: &Complex,
+        edge: [u32; 3],
+        max_ring: usize,
+        chord: impl Fn(&Complex, [u32; 2]) -> bool,
+        score: impl FnMut(&Complex, &[u32; 4]) -> Option<f64>,
+    ) -> Result<f64, Refusal> {
         let mut ring = std::mem::take(&mut self.ring);
-        let result = self.plan_ring(c, &mut ring, [t, a, b], max_ring.min(MAX_RING), score);
+        let result = self.plan_ring(c, &mut ring, edge, max_ring.min(MAX_RING), (chord, score));
         self.ring = ring;
         result
     }
@@ -96,7 +113,7 @@ impl Flipper {
         ring: &mut EdgeRing,
         [t, a, b]: [u32; 3],
         max_ring: usize,
-        score: impl FnMut(&Complex, &[u32; 4]) -> Option<f64>,
+        rules: (impl Fn(&Complex, [u32; 2]) -> bool, impl FnMut(&Complex, &[u32; 4]) -> Option<f64>),
     ) -> Result<f64, Refusal> {
         if !ring.collect(c, t, a, b, max_ring) {
             let missing = c.slot_of(t, a).is_none() || c.slot_of(t, b).is_none();
@@ -110,7 +127,7 @@ impl Flipper {
                 return Err(Refusal::Frozen);
             }
         }
-        self.triangulate_ring(c, ring, score)
+        self.triangulate_ring(c, ring, rules)
     }
 
     /// Fills `old` and `new` with the best triangulation of the ring.
@@ -118,7 +135,7 @@ impl Flipper {
         &mut self,
         c: &Complex,
         ring: &EdgeRing,
-        mut score: impl FnMut(&Complex, &[u32; 4]) -> Option<f64>,
+        (chord, mut score): (impl Fn(&Complex, [u32; 2]) -> bool, impl FnMut(&Complex, &[u32; 4]) -> Option<f64>),
     ) -> Result<f64, Refusal> {
         let n = ring.len();
         self.best.clear();
@@ -144,6 +161,10 @@ impl Flipper {
                     if q.min(r) > top {
                         (top, at) = (q.min(r), k);
                     }
+                }
+                let whole = span == n - 1;
+                if top > f64::NEG_INFINITY && !whole && !chord(c, [ring.rim[i], ring.rim[j]]) {
+                    top = f64::NEG_INFINITY;
                 }
                 self.best[i * n + j] = top;
                 self.split[i * n + j] = at as u8;

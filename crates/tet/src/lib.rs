@@ -71,6 +71,7 @@
 //! # Ok::<(), anastomesh_tet::TetError>(())
 //! ```
 
+mod attempts;
 mod builder;
 mod carve;
 pub(crate) mod certify;

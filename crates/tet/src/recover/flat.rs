@@ -28,6 +28,8 @@ impl Recovery<'_> {
             self.c.real_tets().map(|t| self.c.verts(t)).filter(|v| !self.rule.allows(self.c, v)).collect();
         for v in flat {
             self.budget = BUDGET;
+            self.journal.clear();
+            self.failed.clear();
             self.dissolve_one(v);
         }
     }

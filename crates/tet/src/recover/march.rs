@@ -196,7 +196,7 @@ pub(super) fn piercing_edges(
 }
 
 /// True if edge `p, q` pierces the interior of a triangle.
-fn pierces(c: &Complex, [p, q]: [u32; 2], tri: [u32; 3]) -> bool {
+pub(super) fn pierces(c: &Complex, [p, q]: [u32; 2], tri: [u32; 3]) -> bool {
     if tri.contains(&p) || tri.contains(&q) {
         return false;
     }

@@ -2,10 +2,11 @@
 //! then lengthened along the segment as far as one vertex can see.
 
 use super::course::{Course, Deepest};
+use super::parts::{sides, sorted};
 use super::space::Space;
 use crate::star::EdgeRing;
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Bits of a weight below the leading bit of its interval's length.
 const BITS: u32 = 4;
@@ -325,15 +326,17 @@ impl<'a> Dig<'a> {
     /// True if no vertex, edge or face that must stay is inside the cavity.
     fn keeps(&self, tets: &[u32], walls: &[u32]) -> bool {
         let faces: Vec<[u32; 3]> = walls.iter().map(|&half| self.s.c.face(half)).collect();
-        let has = |part: &[u32]| faces.iter().any(|f| part.iter().all(|x| f.contains(x)));
+        let corners: FxHashSet<u32> = faces.iter().flatten().copied().collect();
+        let edges: FxHashSet<[u32; 2]> = faces.iter().flat_map(|&f| sides(f)).collect();
+        let inside: FxHashSet<u32> = tets.iter().copied().collect();
         tets.iter().all(|&t| {
             let v = self.s.c.verts(t);
             // Free vertices may be removed.
             let stays = |x: u32| (x as usize) < self.points || self.s.is_implicit(x);
-            let frozen = |half| self.s.c.is_frozen(half) && tets.contains(&(self.s.c.mate(half) >> 2));
-            v.iter().all(|&x| !stays(x) || has(&[x]))
+            let frozen = |half| self.s.c.is_frozen(half) && inside.contains(&(self.s.c.mate(half) >> 2));
+            v.iter().all(|&x| !stays(x) || corners.contains(&x))
                 && !(4 * t..4 * t + 4).any(frozen)
-                && (0..4).all(|i| (0..i).all(|j| !(self.keep)(v[i], v[j]) || has(&[v[i], v[j]])))
+                && (0..4).all(|i| (0..i).all(|j| edges.contains(&sorted(v[i], v[j])) || !(self.keep)(v[i], v[j])))
         })
     }
 }

@@ -34,7 +34,7 @@ use crate::input::SurfaceEdges;
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 use level::level_out;
-pub(crate) use one::ExactSummary;
+use one::ExactSummary;
 pub(crate) use parts::Missing;
 use push::Push;
 use queue::{Failed, Queue};
@@ -42,62 +42,99 @@ use segments::Segments;
 use space::Space;
 pub(crate) use ways::RecoveryStrategy;
 
-/// Recovers the missing parts in a complex that has the rest of the surface with its triangles frozen. The ways are
-/// tried in order until one succeeds. The surface must not intersect itself; its triangles may share whole edges and
-/// vertices in any way. `flat` is the thickness below which a part counts as flat in the choice between ways.
-///
-/// # Errors
-/// [`TetError::EdgeMeets`]; [`TetError::Stuck`] if no floating-point position off the surface exists or the vertex
-/// budget is exceeded; [`TetError::Cancelled`].
-pub(crate) fn recover_exact(
-    c: &Complex,
-    surface: &TriMesh,
-    edges: &SurfaceEdges,
-    missing: Missing,
-    (ways, flat): (&[RecoveryStrategy], f64),
-    watch: &Watch,
-) -> Result<(Complex, ExactSummary), TetError> {
-    let segments = Segments::new(edges, surface.points.len());
-    let push = Push::new(Space::new(c.clone(), flat), segments, surface.triangles.clone());
-    let start = Start { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
-    let mut level: Option<Option<Start>> = None;
-    let mut last = TetError::NotRecovered { edges: start.edges.clone(), triangles: start.triangles.clone() };
-    for &way in ways {
-        let start = match (way.level, &mut level) {
-            (None, _) => &start,
-            (Some(_), Some(Some(level))) => level,
-            (Some(_), Some(None)) => continue,
-            (Some(share), none) => match none.insert(start.leveled(edges, share, watch)?) {
-                Some(level) => level,
-                None => continue,
-            },
-        };
-        let left = Missing { edges: &start.edges, triangles: &start.triangles };
-        let budget = way.budget(start.edges.len());
-        match Queue::new(start.push.clone(), (surface, edges), (way, budget), watch).run(left) {
-            Ok((push, summary)) => return Ok((push.s.c, summary)),
-            Err(Failed { error, .. }) if !matches!(error, TetError::Stuck { .. }) => return Err(error),
-            Err(Failed { error, .. }) => last = error,
+/// Exact recovery of the missing parts in a complex that has the rest of the surface with its triangles frozen. The
+/// surface must not intersect itself; its triangles may share whole edges and vertices in any way.
+pub(crate) struct ExactRecovery<'a> {
+    surface: &'a TriMesh,
+    edges: &'a SurfaceEdges,
+    start: State<'a>,
+    /// State after recovery in planes, `None` if that did not help.
+    level: Option<Option<State<'a>>>,
+}
+
+impl<'a> ExactRecovery<'a> {
+    /// Recovery that starts with `c`. `flat` is the thickness below which a part counts as flat in the choice between
+    /// ways.
+    pub(crate) fn new(
+        c: Complex,
+        (surface, edges): (&'a TriMesh, &'a SurfaceEdges),
+        missing: Missing,
+        flat: f64,
+    ) -> Self {
+        let segments = Segments::new(edges, surface.points.len());
+        let push = Push::new(Space::new(c, flat), segments, surface.triangles.clone());
+        let start = State { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec(), made: 0 };
+        Self { surface, edges, start, level: None }
+    }
+
+    /// Number of missing edges and triangles.
+    pub(crate) fn missing(&self) -> usize {
+        self.start.edges.len() + self.start.triangles.len()
+    }
+
+    /// Complex with the parts recovered so far, and the number of Steiner points made.
+    pub(crate) fn into_complex(self) -> (Complex, usize) {
+        (self.start.push.s.c, self.start.made)
+    }
+
+    /// Tries one strategy. Each part may take `share` times the usual operations. After a failure, the parts that it recovered are kept.
+    ///
+    /// # Errors
+    /// [`TetError::EdgeMeets`]; [`TetError::Stuck`] if no floating-point position off the surface exists or the vertex
+    /// budget is exceeded; [`TetError::OverBudget`]; [`TetError::Cancelled`].
+    pub(crate) fn attempt(
+        &mut self,
+        way: RecoveryStrategy,
+        share: u64,
+        watch: &Watch,
+    ) -> Result<(Complex, ExactSummary), TetError> {
+        let none = TetError::NotRecovered { edges: self.start.edges.clone(), triangles: self.start.triangles.clone() };
+        let leveled = way.level.is_some();
+        if let Some(share) = way.level {
+            let known = self.level.as_ref().is_some_and(|level| level.is_some() || share.is_finite());
+            if !known {
+                self.level = Some(self.start.leveled(self.edges, share, watch)?);
+            }
+        }
+        let state = if leveled { self.level.as_mut().and_then(Option::as_mut) } else { Some(&mut self.start) };
+        let Some(state) = state else { return Err(none) };
+        let left = Missing { edges: &state.edges, triangles: &state.triangles };
+        let budget = way.budget(state.edges.len());
+        let made = state.made;
+        let queue = Queue::new(state.push.clone(), (self.surface, self.edges), (way, budget, share), watch);
+        match queue.run(left) {
+            Ok((push, summary)) => {
+                Ok((push.s.c, ExactSummary { steiner_points: made + summary.steiner_points, ..summary }))
+            }
+            Err(Failed { error, rest, .. }) => {
+                let before = state.edges.len() + state.triangles.len();
+                if let Some(rest) = rest.filter(|rest| rest.edges.len() + rest.triangles.len() < before) {
+                    self.start = State { made: made + rest.made, ..*rest };
+                    self.level = None;
+                }
+                Err(error)
+            }
         }
     }
-    Err(last)
 }
 
 /// A complex and the edges and triangles of the surface that it lacks.
 #[derive(Clone)]
-struct Start<'a> {
+struct State<'a> {
     push: Push<'a>,
     edges: Vec<[u32; 2]>,
     triangles: Vec<u32>,
+    /// Steiner points made by exact recovery.
+    made: usize,
 }
 
-impl Start<'_> {
+impl State<'_> {
     /// Recovers edges in facet planes. Returns `None` if more than `share` of the edges would remain missing.
     fn leveled(&self, edges: &SurfaceEdges, share: f64, watch: &Watch) -> Result<Option<Self>, TetError> {
         let mut push = self.push.clone();
         let missing = Missing { edges: &self.edges, triangles: &self.triangles };
         let left = level_out(&mut push, edges, missing, share, watch)?;
-        Ok(left.map(|(edges, triangles)| Self { push, edges, triangles }))
+        Ok(left.map(|(edges, triangles)| Self { push, edges, triangles, made: self.made }))
     }
 }
 

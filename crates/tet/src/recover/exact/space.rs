@@ -7,6 +7,9 @@ use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
 use anastomesh_mesh::geometry::predicates;
 use std::cmp::Ordering;
 
+/// Maximum tetrahedra of a cavity that is searched without sorting.
+const SMALL: usize = 16;
+
 /// A complex that stores implicit points by their rounded coordinates.
 #[derive(Clone)]
 pub(super) struct Space {
@@ -146,7 +149,12 @@ impl Space {
     /// Half-faces of the given tetrahedra with their mate outside.
     pub(super) fn outer(&self, cavity: &[u32]) -> Vec<u32> {
         let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
-        halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect()
+        if cavity.len() <= SMALL {
+            return halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect();
+        }
+        let mut sorted = cavity.to_vec();
+        sorted.sort_unstable();
+        halves.filter(|&half| sorted.binary_search(&(self.c.mate(half) >> 2)).is_err()).collect()
     }
 
     /// Faces around the given tetrahedra, counter-clockwise seen from outside.

@@ -19,14 +19,15 @@ fn fills(surface: &TriMesh, segments: &[[u32; 2]], kind: InputKind) -> Result<Ex
     let mut c = delaunay(&points)?;
     let (lost_edges, lost_triangles) = survey(&mut c, surface, &edges);
     let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
-    let (c, summary) = recover_exact(
-        &c,
-        surface,
-        &edges,
-        missing,
-        (&RecoveryStrategy::OTHERS, flat_height(&surface.points)),
-        &Watch::NOBODY,
-    )?;
+    let mut recovery = ExactRecovery::new(c, (surface, &edges), missing, flat_height(&surface.points));
+    let mut result = Err(TetError::NotRecovered { edges: Vec::new(), triangles: Vec::new() });
+    for way in RecoveryStrategy::GIVEN {
+        result = recovery.attempt(way, 100, &Watch::NOBODY);
+        if !matches!(result, Err(TetError::Stuck { .. })) {
+            break;
+        }
+    }
+    let (c, summary) = result?;
     c.sanity_check()?;
     let mut c = c;
     assert_eq!(survey(&mut c, surface, &edges), (Vec::new(), Vec::new()));

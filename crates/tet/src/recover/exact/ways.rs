@@ -9,9 +9,6 @@ const VERTICES: (usize, usize) = (256, 1_000_000);
 /// Maximum implicit vertices with deep cavities, where each vertex takes longer.
 const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 
-/// Maximum implicit vertices while other strategies remain that may need fewer.
-const VERTICES_FIRST: (usize, usize) = (4, 25_000);
-
 /// Maximum fraction of missing edges left after recovery in planes. Beyond it, new vertices are mere obstacles.
 const WORTHWHILE: f64 = 0.2;
 
@@ -29,15 +26,12 @@ pub(crate) struct RecoveryStrategy {
 }
 
 impl RecoveryStrategy {
-    /// Fastest strategy, with a small vertex budget.
-    pub(crate) const FIRST: [Self; 1] = [Self { vertices: VERTICES_FIRST, ..Self::seen(0) }];
+    /// Strategies for the complex left by flips, the fastest first.
+    pub(crate) const GIVEN: [Self; 4] = [Self::seen(0), Self::deep(false, 0), Self::seen(1), Self::deep(true, 2)];
 
-    /// Strategies for parts that are flat up to rounding.
+    /// Strategies for a complex without flat tetrahedra.
     pub(crate) const TURNED: [Self; 5] =
         [Self::deep(true, 0), Self::level(1), Self::deep(true, 2), Self::deep(false, 0), Self::deep(false, 1)];
-
-    /// Remaining strategies.
-    pub(crate) const OTHERS: [Self; 4] = [Self::seen(0), Self::seen(1), Self::deep(true, 2), Self::deep(false, 3)];
 
     /// Last strategies, for parts that may be flat. They exchange edges in planes whatever the gain.
     pub(crate) const LAST: [Self; 7] = [
