@@ -87,7 +87,9 @@ fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError
     r.watch.report(Stage::Optimize, 0, 1)?;
     // The improvement limits itself by attempts per tetrahedron.
     r.watch.spend(OPTIMIZATION * carved.slots())?;
-    let options = OptimizeOptions { fixed_points: r.surface.points.len(), ..OptimizeOptions::of(r.effort) };
+    let fixed_points = r.surface.points.len();
+    // Callers without a certificate improve their meshes further.
+    let options = OptimizeOptions { fixed_points, spare_needles: r.certify, ..OptimizeOptions::of(r.effort) };
     let report = optimize_complex(carved, &options, r.watch);
     r.watch.report(Stage::Optimize, 1, 1)?;
     Ok(report)

@@ -41,6 +41,7 @@ const HARD: OptimizeOptions = OptimizeOptions {
     keep_points: false,
     attempts_per_tet: 400,
     effort: Effort::Full,
+    spare_needles: false,
 };
 
 /// Tube of radius 1 along z from 0 to 1: the length is scaled out.

@@ -3,10 +3,14 @@
 
 use crate::complex::{Complex, face_key};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::quality::TET_EDGES;
 use rustc_hash::FxHashMap;
 
 /// Sine of the angle below which a triangle counts as a needle: 12 degrees.
 const SHARP: f64 = 0.2079;
+
+/// Part of the attainable ratio above which a tetrahedron at a needle is left.
+const EXHAUSTED: f64 = 0.5;
 
 /// Attainable radius ratios on fixed triangles, stored where below 1.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +18,8 @@ pub(super) struct Allowance {
     /// True for vertices of such a triangle.
     marked: Vec<bool>,
     of_face: FxHashMap<[u32; 3], f64>,
+    /// Smallest ratio of the needles at each of their edges.
+    of_edge: FxHashMap<[u32; 2], f64>,
 }
 
 impl Allowance {
@@ -29,6 +35,10 @@ impl Allowance {
                         all.marked.resize(c.points.len(), false);
                         for v in f {
                             all.marked[v as usize] = true;
+                        }
+                        for [v, w] in [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]] {
+                            let least = all.of_edge.entry([v.min(w), v.max(w)]).or_insert(1.0);
+                            *least = allowed.min(*least);
                         }
                         all.of_face.insert(face_key(f), allowed);
                     }
@@ -60,6 +70,15 @@ impl Allowance {
     #[inline]
     pub fn relative(&self, v: &[u32; 4], ratio: f64) -> f64 {
         if self.is_empty() { ratio } else { ratio / self.of_tet(v) }
+    }
+
+    /// True if a tetrahedron at a needle is about as good as the needle allows. The needle may be one of its faces, or share
+    /// an edge with it: then the short edge of the needle, or its far corners, are near as well.
+    pub fn is_exhausted(&self, v: &[u32; 4], ratio: f64) -> bool {
+        let marks = v.map(|w| self.has_needle(w));
+        let edges = TET_EDGES.iter().filter(|[i, j]| marks[*i] && marks[*j]);
+        let allowed = edges.filter_map(|&[i, j]| self.of_edge.get(&[v[i].min(v[j]), v[i].max(v[j])]));
+        ratio > EXHAUSTED * allowed.fold(f64::INFINITY, |least, &a| least.min(a))
     }
 
     /// Attainable radius ratio of a tetrahedron with these vertices.

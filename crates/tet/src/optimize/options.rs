@@ -32,6 +32,8 @@ pub struct OptimizeOptions {
     pub attempts_per_tet: usize,
     /// Effort below `stubborn_below`.
     pub effort: Effort,
+    /// True if tetrahedra at needles of the surface are left once they are about as good as the needle allows.
+    pub spare_needles: bool,
 }
 
 impl Default for OptimizeOptions {
@@ -45,6 +47,7 @@ impl Default for OptimizeOptions {
             keep_points: false,
             attempts_per_tet: 20,
             effort: Effort::Fast,
+            spare_needles: false,
         }
     }
 }

@@ -23,6 +23,8 @@ const FREE: usize = 200;
 const MIN_ROUND_GAIN: f64 = 0.25;
 /// Maximum attempts: one per 4 tetrahedra, but at least 100.
 const MOST: (usize, usize) = (4, 100);
+/// As [`MOST`], if needles are spared.
+const MOST_SPARED: (usize, usize) = (6, 60);
 
 /// Budget for treating bad tetrahedra, in attempts. A failed attempt takes some 0.2 ms. The free attempts are followed
 /// by rounds that pay off, up to the maximum.
@@ -36,8 +38,9 @@ struct AttemptBudget {
 }
 
 impl AttemptBudget {
-    fn of(tets: usize) -> Self {
-        Self { free: tets / FREE, most: (tets / MOST.0).max(MOST.1), spent: 0, strain: f64::INFINITY }
+    fn of(tets: usize, spare_needles: bool) -> Self {
+        let (each, least) = if spare_needles { MOST_SPARED } else { MOST };
+        Self { free: tets / FREE, most: (tets / each).max(least), spent: 0, strain: f64::INFINITY }
     }
 
     /// True if another round pays off, given the current strain of bad tetrahedra.
@@ -57,7 +60,7 @@ impl Improver<'_> {
     /// Treats all tetrahedra below the stubborn limit, worst first, except those on needles close to the attainable
     /// quality.
     pub(super) fn treat_thoroughly(&mut self, allowance: &Allowance) {
-        let mut budget = AttemptBudget::of(self.c.real_tets().count());
+        let mut budget = AttemptBudget::of(self.c.real_tets().count(), self.options.spare_needles);
         for _ in 0..MAX_THOROUGH_PASSES {
             let list = self.worst_first(self.options.stubborn_below);
             if !budget.pays_off(self.strain_of_list(&list)) {
@@ -65,8 +68,12 @@ impl Improver<'_> {
                 break;
             }
             let (tried, changes) = self.treat_each(&list, &mut budget, |s, t| {
-                let allowed = allowance.of_tet(&s.c.verts(t));
-                allowed >= 1.0 || s.quality[t as usize] < allowed
+                let (v, ratio) = (s.c.verts(t), s.quality[t as usize]);
+                if s.options.spare_needles && allowance.is_exhausted(&v, ratio) {
+                    return false;
+                }
+                let allowed = allowance.of_tet(&v);
+                allowed >= 1.0 || ratio < allowed
             });
             self.keep_list(list);
             self.smooth_stars_below(self.options.smooth_below);
@@ -109,7 +116,7 @@ impl Improver<'_> {
         }
         self.allowance = allowance;
         self.reconnection.forget();
-        let mut budget = AttemptBudget::of(self.c.real_tets().count());
+        let mut budget = AttemptBudget::of(self.c.real_tets().count(), self.options.spare_needles);
         for _ in 0..MAX_SPARING_PASSES {
             // Retry all: small moves, which do not count as changes, may decide.
             self.tried.clear();
@@ -134,6 +141,9 @@ impl Improver<'_> {
     /// True if a tetrahedron off the needles is below `VERY_BAD`, or bad beside a needle.
     fn is_spared(&self, t: u32) -> bool {
         let v = self.c.verts(t);
+        if self.options.spare_needles && self.allowance.is_exhausted(&v, self.quality[t as usize]) {
+            return false;
+        }
         (self.quality[t as usize] < VERY_BAD || v.iter().any(|&v| self.allowance.has_needle(v)))
             && self.allowance.of_tet(&v) >= 1.0
     }
