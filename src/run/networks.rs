@@ -48,8 +48,8 @@ pub struct RefinedAxis {
 const HOPELESS: f64 = 0.6;
 /// Maximum number of edges of a measured network that is meshed as given although such vessels overlap.
 const SMALL: usize = 10_000;
-/// Maximum number of overlaps of vessels without a common node for which only the overlapping vessels of a grown network are
-/// moved: a number, and a fraction of the edges.
+/// Maximum number of overlaps without a common node for which a grown network is refined locally: a number, and a fraction of
+/// the edges.
 const FEW: (usize, f64) = (3, 0.015);
 /// Distance along the vessels, in sums of radii, from which such an overlap joins two lumens whatever the network is.
 const FAR: f64 = 6.0;

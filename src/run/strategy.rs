@@ -284,12 +284,15 @@ impl<'a> Meshing<'a, '_> {
         self.refine.as_ref().is_some_and(|params| params.lengthens(&networks.prepared))
     }
 
-    /// True if the first mesh is sound and the second is not, or differs more from the given network.
+    /// True if the first mesh is sound and the second is not, or differs more from the given network. Of two meshes that are not
+    /// sound, the second one must differ by more than the usual limits, too.
     fn is_closer(&self, first: &Candidate, second: &Candidate) -> bool {
-        if self.fault_of(&first.stored).is_some() {
-            return false;
+        match [first, second].map(|candidate| self.fault_of(&candidate.stored)) {
+            [None, None] => difference(first) < difference(second),
+            [None, Some(_)] => true,
+            [Some(_), None] => false,
+            [Some(_), Some(_)] => difference(second) > difference(first).max(1.0),
         }
-        self.fault_of(&second.stored).is_some() || difference(first) < difference(second)
     }
 
     /// True if the mesh of a fallback is valid, and its volume error smaller if that was the fault.

@@ -1,7 +1,7 @@
 //! Short tips, whose cap would lie in the wall of another vessel of their branch point.
 
-use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_skeleton::{Adjacency, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
+use anastomesh_mesh::geometry::{Point3, Vec3, point_segment};
+use anastomesh_skeleton::{Adjacency, Branch, BranchId, Branches, NodeId, Skeleton, SkeletonError, clean, separation};
 use serde::Serialize;
 
 /// Required tip length: a factor on the distance at which two walls separate (equation 12), and an addition in radii.
@@ -76,19 +76,42 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
     let way = (at(tip) - at(own.other(tip))).try_normalize(0.0)?;
     let chord = at(tip) - at(from);
     let mut needed = 0.0_f64;
+    let mut is_outside = true;
     for &edge in adjacency.edges(from).iter().filter(|e| branches.of_edge[e.index()].0 != id) {
         let beside = point_along(skeleton, branches, edge, from, length) - at(from);
         let other = skeleton.edge(edge).radii[skeleton.edge(edge).end(from)];
-        if beside.norm() > 0.0 && chord.norm() > 0.0 {
-            needed = needed.max(MARGIN * separation(&chord, &beside, [radius, other]).max(other) + OWN * radius);
+        if beside.norm() <= 0.0 || chord.norm() <= 0.0 {
+            continue;
         }
+        let length_needed = MARGIN * separation(&chord, &beside, [radius, other]).max(other) + OWN * radius;
+        if length_needed <= length {
+            continue;
+        }
+        // Chords say little about vessels that wind, or taper from a wide branch point.
+        let vessel = &branches.list[branches.of_edge[edge.index()].0.index()];
+        let is_apart = |distance: f64, wall: f64| distance >= MARGIN * (wall + radius);
+        if is_beyond(skeleton, vessel, &at(tip), is_apart) {
+            continue;
+        }
+        is_outside &= is_beyond(skeleton, vessel, &at(tip), |distance, wall| distance >= wall + OWN * radius);
+        needed = needed.max(length_needed);
     }
     let short = needed - length;
-    (short > 0.0).then(|| {
+    let is_stub = short > length && length <= STUB * radius;
+    let put_out = short <= length.max(FURTHEST * radius) && !is_stub;
+    // A longer vessel that leaves the others is not removed: the mesher finds out whether its cap fits.
+    let is_short = short > 0.0 && (put_out || !is_outside || length <= STUB * radius);
+    is_short.then(|| {
         let name = |n: NodeId| skeleton.node(n).original;
-        let is_stub = short > length && length <= STUB * radius;
-        let put_out = short <= length.max(FURTHEST * radius) && !is_stub;
         ExtendedTip { node: tip, way, told: ShortTip { tip: name(tip), from: name(from), length, needed, put_out } }
+    })
+}
+
+/// True if a point satisfies a condition on its distance from each axis of a vessel and the radius there.
+fn is_beyond(skeleton: &Skeleton, vessel: &Branch, point: &Point3, is_apart: impl Fn(f64, f64) -> bool) -> bool {
+    vessel.tubes(skeleton).all(|tube| {
+        let (t, distance) = point_segment(point, &tube.a, &tube.b);
+        is_apart(distance, tube.radius(t))
     })
 }
 

@@ -286,8 +286,8 @@ impl<'a> Work<'a> {
         self.extend_or_remove(way, STEP)
     }
 
-    /// Extends a tip straight on by at least `least` radii and at most the length of its vessel, to the first position with
-    /// space for a cap. If another vessel is in the way, the vessel of the tip is removed.
+    /// Extends a tip straight on to the first position with space for a cap. If another vessel is in the way, the vessel of the
+    /// tip is removed. The extension is at least `least` radii, and at most the length of the vessel.
     fn extend_or_remove(&mut self, way: &TipBranch, least: f64) -> TouchedBy {
         let is_buried = self.stands(way).first().is_some_and(|stand| self.is_buried(way, stand));
         if let Some(stand) = self.beyond(way, least).filter(|_| !is_buried) {

@@ -17,7 +17,7 @@ const REACH: f64 = 4.0;
 const RAMP: f64 = 0.6;
 /// Vessels closer than this, in sums of their radii, almost touch: their walls may intersect.
 const CLOSE: f64 = 1.02;
-/// The same in a network with overlaps. Walls of vessels in one block fuse at this distance.
+/// Corresponding distance in a network with overlaps. Walls of vessels in one block fuse at this distance.
 const CLOSE_BESIDE_OVERLAPS: f64 = 1.05;
 /// Maximum limit for an overlap, in sums of its radii: a vessel that crosses another axis has to move by one.
 const DEMANDED: f64 = 2.0;
