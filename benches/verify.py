@@ -1,7 +1,8 @@
 """Differential test of both checkers: `anastomesh check` and `anastomesh-verify` on meshes that are broken at random.
 
     cargo build -p anastomesh-verify
-    python3 benches/verify.py [--program PATH] [--verifier PATH] [--count N] [--seed S] [--jobs N] [--keep DIR] [--only MUTATION]
+    python3 benches/verify.py [--program PATH] [--verifier PATH] [--count N] [--seconds T] [--seed S] [--jobs N]
+        [--keep DIR] [--only MUTATION]
 
 Each mesh is a small sound one (boxes, tubes with caps, rings, shells, parts, random cells), turned and scaled, with one
 mutation, in one of the formats that both programs read. The table has a row per mutation: meshes, both valid, both not
@@ -19,6 +20,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 from collections import Counter, defaultdict
 from concurrent.futures import ThreadPoolExecutor
@@ -509,15 +511,19 @@ def main():
     parser.add_argument("--program", default="target/debug/anastomesh")
     parser.add_argument("--verifier", default="target/debug/anastomesh-verify")
     parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seconds", type=float, default=math.inf, help="stop after this time")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", type=Path)
     parser.add_argument("--only", choices=sorted(MUTATIONS))
     args = parser.parse_args()
     rows, pairs, listed = defaultdict(Counter), Counter(), []
+    end = time.monotonic() + args.seconds
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
         folder = Path(folder)
         for start in range(args.seed, args.seed + args.count, BATCH):
+            if time.monotonic() > end:
+                break
             made = [make(seed, folder, args.only) for seed in range(start, min(start + BATCH, args.seed + args.count))]
             paths = [path for path, _ in made]
             first = pool.map(lambda path: checked(args.program, path), paths)

@@ -31,7 +31,8 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
         found.retain(|node| missing.iter().position(|m| m == node).map(|at| missing.swap_remove(at)).is_none());
         report.add(C::CapPerTerminal, missing.iter().chain(&found).map(|node| format!("node {node}")));
     }
-    if !mesh.patches.is_empty() && are_inside {
+    let is_named = !mesh.patches.is_empty() || !mesh.caps.is_empty();
+    if is_named && are_inside {
         patches(mesh, report);
         caps(mesh, report);
     }
@@ -119,6 +120,8 @@ fn caps(mesh: &Mesh, report: &mut Report) {
 }
 
 struct Shape {
+    /// Unit of all lengths, in the unit of the file.
+    unit: f64,
     area: f64,
     /// Distance of the centroid from the given centre.
     off_centre: f64,
@@ -152,6 +155,7 @@ impl Shape {
         let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
         let shift = |p: Vector| ROUNDING * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
         Self {
+            unit,
             area: total,
             off_centre: dot(moment, moment).sqrt() / total,
             height: (range[1] - range[0]) / 2.0,
@@ -167,7 +171,8 @@ impl Shape {
 
     /// Flatness, centre, area and direction of a described cap, whose radius is the unit.
     fn compare(&self) -> [bool; 4] {
-        [self.is_flat(1.0), self.off_centre <= 0.1, (self.area - PI).abs() <= 0.05 * PI, self.faces_along]
+        let has_area = self.unit > 0.0 && (self.area - PI).abs() <= 0.05 * PI;
+        [self.is_flat(1.0), self.off_centre <= 0.1, has_area, self.faces_along]
     }
 }
 

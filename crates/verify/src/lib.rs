@@ -36,6 +36,9 @@ pub use surface::Soup;
 
 use std::path::{Path, PathBuf};
 
+/// Maximum number of tetrahedra and of points.
+const MAX_COUNT: usize = u32::MAX as usize / 4;
+
 /// Conditions beyond those of the mesh alone.
 #[derive(Default)]
 pub struct Demands {
@@ -65,12 +68,17 @@ pub fn verify(mesh: &Mesh, demands: &Demands) -> Report {
 /// # Errors
 /// A file that is missing, damaged, or has cells other than tetrahedra and triangles.
 pub fn read_mesh(path: &Path) -> Read<Mesh> {
-    match extension(path) {
+    let mesh = match extension(path) {
         "vtu" => vtu::read(&std::fs::read(path)?),
         "msh" | "msh2" => msh::read(&std::fs::read(path)?),
         "ele" => tetgen::read(path),
         other => mesh::fail(format!("meshes '.{other}' are not supported; use .vtu, .msh or .ele")),
+    }?;
+    // Numbers of faces and corners have 32 bits.
+    if mesh.tets.len().max(mesh.points.len()) > MAX_COUNT {
+        return mesh::fail(format!("more than {MAX_COUNT} tetrahedra or points"));
     }
+    Ok(mesh)
 }
 
 /// Reads a surface: OFF, STL or PLY.

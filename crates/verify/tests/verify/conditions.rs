@@ -222,6 +222,9 @@ fn patches_and_caps_are_compared() {
     );
     assert_eq!(broken(|m| m.caps[1].center[0] = 0.11), ["cap_centred"]);
     assert_eq!(broken(|m| m.caps[1].radius = 1.1), ["cap_area"]);
+    assert_eq!(broken(|m| m.caps[1].radius = -1.0), ["cap_area"]);
+    assert_eq!(broken(|m| m.caps[1].center[2] = f64::NAN)[..2], ["cap_flat", "cap_centred"]);
+    assert_eq!(broken(|m| m.patches.clear())[0], "own_patch");
     assert_eq!(broken(|m| m.caps[1].normal = [0.0, 0.0, -1.0]), ["cap_normal"]);
     // The end of the axis is moved by more than a billionth of the radius, then by less.
     let moved = |by: f64| move |m: &mut Mesh| m.points[3 * 17][2] += by;
