@@ -18,8 +18,8 @@ from anastomesh._verb import Verb
 from anastomesh.options._option import Keyword, keywords
 from anastomesh.options.files import CapOptions, FileOptions
 
-#: Options of every verb that the package itself gives.
-OURS = {"output", "json", "quiet", "verbose", "progress", "log-format"}
+#: Options that the package itself gives, and those of files that it does not write.
+OURS = {"output", "json", "quiet", "verbose", "progress", "log-format", "certificate"}
 
 #: Functions, their verb and keywords, and options of the verb that are found elsewhere in Python.
 FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [

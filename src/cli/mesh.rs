@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::blocks::BlockArgs;
+use super::certificate::{CertificateArgs, Certified};
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::fidelity::{FidelityArgs, conclude};
@@ -92,6 +93,8 @@ pub struct Args {
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
+    certificate: CertificateArgs,
+    #[command(flatten)]
     report: ReportArgs,
     #[command(flatten)]
     common: Common,
@@ -175,6 +178,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
+    args.certificate.ensure_writable(format)?;
     args.report.ensure_writable()?;
     if let Some(path) = &args.refined {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
@@ -308,6 +312,13 @@ impl Args {
         if let Some(caps) = &made.caps {
             self.write_table(caps, &made.networks.names)?;
         }
+        self.certificate.write(&Certified {
+            input: &self.network.network,
+            mesh: &self.output,
+            format: self.format.of(&self.output)?,
+            options: &self.typed(made.networks.refine.is_some()),
+            check: &made.check,
+        })?;
         let name = |node| made.networks.names.of(NodeId(node));
         let verdict = Verdict::of_mesh(&made.check, &made.report, &self.fidelity.refused(&made.defects), &name);
         let mut run = made.report.clone();
@@ -495,6 +506,7 @@ impl Args {
         }
         let table = self.table();
         let mut files: Vec<&Path> = if found.is_some() { vec![&self.output, &table] } else { Vec::new() };
+        files.extend(self.certificate.path().filter(|_| found.is_some()));
         files.extend(self.report.page().map(PathBuf::as_path));
         let (attempts, listed) = ((attempts, kept), self.common.verbose);
         let summary =

@@ -2,6 +2,7 @@
 
 mod bar;
 mod blocks;
+mod certificate;
 mod check;
 mod clock;
 mod colours;
