@@ -88,11 +88,13 @@ pub(super) fn cap_lines(volume: &VolumeMesh, expectation: Option<&Expectation>) 
     lines
 }
 
-/// Conditions on patches and caps for boundaries labelled by others, without cap data. Likewise if all outlets are one
-/// patch.
+/// Name, or beginning of the name, of a patch with several outlets. It has no cap of its own.
+const GROUP: &str = "outlets";
+
+/// Conditions on patches and caps for boundaries labelled by others, without cap data. Likewise if outlets are grouped.
 pub(super) fn lines_without_caps(patches: &[Patch], expectation: Option<&Expectation>) -> Option<Vec<LineResult>> {
     let no_caps = patches.iter().all(|patch| patch.cap.is_none());
-    let grouped = patches.iter().any(|patch| patch.is_outlet() && patch.cap.is_none());
+    let grouped = patches.iter().any(|patch| patch.name.starts_with(GROUP) && patch.cap.is_none());
     if !(no_caps || grouped) || expectation.is_some_and(|expected| expected.terminals.is_empty()) {
         return None;
     }

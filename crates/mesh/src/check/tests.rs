@@ -347,6 +347,19 @@ fn only_the_first_offenders_are_kept_and_fewer_are_printed() {
 }
 
 #[test]
+fn a_single_outlet_without_a_cap_hides_no_fault() {
+    // A wall triangle with a label of its own, and a cap at a label that no triangle has.
+    let strange_label = |v: &mut VolumeMesh, _: &mut Expectation| {
+        let wall = v.boundary_patch.iter().position(|&id| id == WALL).unwrap();
+        v.boundary_patch[wall] = 9;
+        v.patches.push(Patch { id: 9, name: "outlet_6".into(), cap: None });
+    };
+    assert_eq!(planted(strange_label), [Line::WallOrCap]);
+    let lost_cap = |v: &mut VolumeMesh, _: &mut Expectation| v.patches[2].cap = None;
+    assert_eq!(planted(lost_cap), [Line::WallOrCap, Line::CapPerTerminal]);
+}
+
+#[test]
 fn of_outlets_that_are_one_patch_the_caps_are_not_known() {
     let group = |v: &mut VolumeMesh, e: &mut Expectation| {
         v.patches[2] = Patch { id: 3, name: "outlets".into(), cap: None };

@@ -256,7 +256,9 @@ impl MshSections {
         let cap = |id: i32| caps.iter().find(|(patch, _)| *patch == id).map(|(_, cap)| *cap);
         let named = self.names.iter().map(|(id, _)| *id);
         let ids = distinct(self.group_of_surface.values().copied().chain(named).collect());
-        let patch = |id| Patch { id, name: name(id).unwrap_or_else(|| usual_name(id)), cap: cap(id) };
+        // Usual names are for files without any; a label without a name among others is a fault that a check finds.
+        let unnamed = |id| if self.names.is_empty() { usual_name(id) } else { format!("patch_{id}") };
+        let patch = |id| Patch { id, name: name(id).unwrap_or_else(|| unnamed(id)), cap: cap(id) };
         ids.into_iter().map(patch).collect()
     }
 }
