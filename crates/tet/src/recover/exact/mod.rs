@@ -57,7 +57,7 @@ enum Leveled<'a> {
     Unknown,
     /// Too many edges would remain.
     Useless,
-    Done(State<'a>),
+    Done(Box<State<'a>>),
 }
 
 impl<'a> ExactRecovery<'a> {
@@ -105,11 +105,11 @@ impl<'a> ExactRecovery<'a> {
             };
             if !known {
                 let leveled = self.start.leveled(self.edges, share, watch)?;
-                self.level = leveled.map_or(Leveled::Useless, Leveled::Done);
+                self.level = leveled.map_or(Leveled::Useless, |state| Leveled::Done(Box::new(state)));
             }
         }
         let state = match (&self.level, way.level) {
-            (Leveled::Done(state), Some(_)) => Some(state),
+            (Leveled::Done(state), Some(_)) => Some(&**state),
             (_, Some(_)) => None,
             (_, None) => Some(&self.start),
         };
