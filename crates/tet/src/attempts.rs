@@ -51,12 +51,15 @@ pub(super) fn recover_rest(
 ) -> Result<Recovered, TetError> {
     let flat = flat_height(&r.surface.points);
     let single = flat_height_in_single(&r.surface.points);
-    let turned = single.filter(|&coarse| lies_turned(r.surface, missing.edges, coarse));
+    let edges = missing.edges;
+    let is_turned = lies_turned(r.surface, edges, flat) || has_flat(&complex, flat, edges.len());
+    let turned = single.filter(|&thickness| lies_turned(r.surface, edges, thickness)).or(is_turned.then_some(flat));
     let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
-    let mut attempts = vec![Attempt::given(r, points, complex, missing, flat)];
-    for thickness in [turned, Some(flat), single.filter(|_| turned.is_none())].into_iter().flatten() {
-        attempts.push(Attempt::thick(thickness, &RecoveryStrategy::TURNED));
-    }
+    let thick = |thickness| Attempt::thick(thickness, &RecoveryStrategy::TURNED);
+    let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();
+    attempts.push(Attempt::given(r, points, complex, missing, flat));
+    let others = [Some(flat), single].into_iter().flatten().filter(|&thickness| turned != Some(thickness));
+    attempts.extend(others.map(thick));
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
     for round in 0..MAX_ROUNDS {
         for attempt in &mut attempts {
@@ -75,6 +78,12 @@ pub(super) fn recover_rest(
         }
     }
     Err(last)
+}
+
+/// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
+fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
+    let flat = complex.real_tets().filter(|&t| !Rule::Thick(height).allows(complex, &complex.verts(t)));
+    flat.take(edges + 1).count() > edges
 }
 
 impl<'a> Attempt<'a> {

@@ -105,6 +105,8 @@ pub(super) struct Level<'a> {
     thin: f64,
     /// Cached planes of missing facets, with the areas they were estimated from.
     planes: FxHashMap<[u32; 3], (f64, Plane)>,
+    /// Exchanges tried and not yet counted.
+    exchanges: usize,
     /// New vertices that lie in no plane.
     pub made: Vec<u32>,
     /// New vertices in planes.
@@ -146,7 +148,7 @@ pub(super) fn level_out(
         };
         let mut again = Vec::new();
         for (tried, edge) in left.into_iter().enumerate() {
-            watch.spend(OPERATIONS)?;
+            watch.spend(OPERATIONS * (1 + std::mem::take(&mut level.exchanges)))?;
             if !level.insert(edge) {
                 again.push(edge);
             }
@@ -190,6 +192,7 @@ impl<'a> Level<'a> {
             clearance: 0.0,
             thin: 0.0,
             planes: FxHashMap::default(),
+            exchanges: 0,
             made: Vec::new(),
             inside: Vec::new(),
             within: FxHashSet::default(),
@@ -267,6 +270,7 @@ impl<'a> Level<'a> {
                 return false;
             }
             work -= 1;
+            self.exchanges += 1;
             let flat = self.quadrilateral(edge, plane);
             let convex = flat.filter(|q| self.convex(q, plane) && self.is_edge_allowed(q.across, q.edge, [a, b]));
             let Some(Diagonal { across: [x, y], .. }) = convex.filter(|q| self.exchange(q)) else {

@@ -48,8 +48,16 @@ pub(crate) struct ExactRecovery<'a> {
     surface: &'a TriMesh,
     edges: &'a SurfaceEdges,
     start: State<'a>,
-    /// State after recovery in planes, `None` if that did not help.
-    level: Option<Option<State<'a>>>,
+    level: Leveled<'a>,
+}
+
+/// State after recovery in planes.
+enum Leveled<'a> {
+    /// Not tried.
+    Unknown,
+    /// Too many edges would remain.
+    Useless,
+    Done(Box<State<'a>>),
 }
 
 impl<'a> ExactRecovery<'a> {
@@ -64,7 +72,7 @@ impl<'a> ExactRecovery<'a> {
         let segments = Segments::new(edges, surface.points.len());
         let push = Push::new(Space::new(c, flat), segments, surface.triangles.clone());
         let start = State { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec(), made: 0 };
-        Self { surface, edges, start, level: None }
+        Self { surface, edges, start, level: Leveled::Unknown }
     }
 
     /// Number of missing edges and triangles.
@@ -89,14 +97,22 @@ impl<'a> ExactRecovery<'a> {
         watch: &Watch,
     ) -> Result<(Complex, ExactSummary), TetError> {
         let none = TetError::NotRecovered { edges: self.start.edges.clone(), triangles: self.start.triangles.clone() };
-        let leveled = way.level.is_some();
         if let Some(share) = way.level {
-            let known = self.level.as_ref().is_some_and(|level| level.is_some() || share.is_finite());
+            let known = match self.level {
+                Leveled::Unknown => false,
+                Leveled::Useless => share.is_finite(),
+                Leveled::Done(_) => true,
+            };
             if !known {
-                self.level = Some(self.start.leveled(self.edges, share, watch)?);
+                let leveled = self.start.leveled(self.edges, share, watch)?;
+                self.level = leveled.map_or(Leveled::Useless, |state| Leveled::Done(Box::new(state)));
             }
         }
-        let state = if leveled { self.level.as_mut().and_then(Option::as_mut) } else { Some(&mut self.start) };
+        let state = match (&self.level, way.level) {
+            (Leveled::Done(state), Some(_)) => Some(&**state),
+            (_, Some(_)) => None,
+            (_, None) => Some(&self.start),
+        };
         let Some(state) = state else { return Err(none) };
         let left = Missing { edges: &state.edges, triangles: &state.triangles };
         let budget = way.budget(state.edges.len());
@@ -110,7 +126,7 @@ impl<'a> ExactRecovery<'a> {
                 let before = state.edges.len() + state.triangles.len();
                 if let Some(rest) = rest.filter(|rest| rest.edges.len() + rest.triangles.len() < before) {
                     self.start = State { made: made + rest.made, ..*rest };
-                    self.level = None;
+                    self.level = Leveled::Unknown;
                 }
                 Err(error)
             }

@@ -170,7 +170,7 @@ impl<'a, 'b> Queue<'a, 'b> {
     fn recover(&mut self, part: &Part, round: u64) -> Result<(), Failed<'a>> {
         let salt = self.way.salt + round;
         let size = (part.edges.len() + part.triangles.len()) as u64;
-        let limit = Budget::new(self.share * (PART_OPERATIONS.0 * size + PART_OPERATIONS.1) << round);
+        let limit = Budget::new((self.share * (PART_OPERATIONS.0 * size + PART_OPERATIONS.1)) << round);
         let watch = self.watch.within(&limit);
         let done = recover_part(&mut self.push, part, salt, &mut self.summary, self.budget, &watch);
         self.watch.spend(limit.spent() as usize).map_err(|stop| Failed::new(stop.into(), false))?;
