@@ -92,8 +92,8 @@ pub struct Region {
     pub max_volume: Option<f64>,
     /// Edge length in the region, if shorter than elsewhere.
     pub size: Option<f64>,
-    /// Maximum ratio of edge lengths in adjacent layers, if less than that of [`Interior::Growing`](crate::Interior::Growing)
-    /// elsewhere.
+    /// Maximum ratio of edge lengths in adjacent layers, if less than that of
+    /// [`Interior::Growing`](crate::Interior::Growing) elsewhere.
     pub growth: Option<f64>,
 }
 

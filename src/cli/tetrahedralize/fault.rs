@@ -107,7 +107,7 @@ fn remedy(error: &TetError) -> Option<&'static str> {
             "the surface passed all checks: give --split to allow splitting, and please report it"
         }
         TetError::TooMany { .. } => {
-            "give a larger --size, --max-volume or --growth, or raise --max-tets (100 to 200 bytes each)"
+            "give a larger --size, --max-volume or --growth, omit --uniform, or raise --max-tets (100 to 200 bytes each)"
         }
         TetError::NotCertified(_) | TetError::Broken(_) => {
             "internal error: please report it with the input and the options"

@@ -153,8 +153,8 @@ impl Refiner<'_, '_> {
         let sum: Vec3 = p.iter().map(|x| x.coords).sum();
         let middle = Point3::from(sum / 4.0);
         let Some(center) = circumcenter(p) else { return self.insert(t, middle, fault) };
-        // If the circumcentre is outside or too close to the boundary, a nearer position may do. For the radius-edge ratio, positions
-        // near the centroid do more harm beside needles than good elsewhere.
+        // If the circumcentre is outside or too close to the boundary, a nearer position may do. For the radius-edge
+        // ratio, positions near the centroid do more harm beside needles than good elsewhere.
         let shares = if fault.is_ratio { &SHARES[..2] } else { &SHARES[..] };
         shares.iter().any(|&share| self.insert(t, middle + (center - middle) * share, fault))
     }
@@ -233,8 +233,8 @@ impl Refiner<'_, '_> {
         self.cavity.push(t);
     }
 
-    /// Collects the tetrahedra around `start` whose circumspheres contain `p`. Returns false for a point near the wall: it
-    /// lies in the smallest sphere of a fixed triangle that it sees, and is to improve a radius-edge ratio. Such points lead to ever
+    /// Collects the tetrahedra around `start` whose circumspheres contain `p`. If the point is to keep `away` from the
+    /// wall, returns false if it lies in the smallest sphere of a fixed triangle that it sees. Such points lead to ever
     /// more points without gain.
     fn dig(&mut self, start: u32, p: &Point3, away: bool) -> bool {
         self.stamp.resize(self.c.slots(), 0);
