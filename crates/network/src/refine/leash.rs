@@ -3,7 +3,8 @@
 use super::frame::Frame;
 use super::params::Freedom;
 use anastomesh_mesh::geometry::{Point3, Total};
-use anastomesh_skeleton::{NodeId, Overlaps, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
+use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -15,10 +16,8 @@ const USUAL: f64 = 0.9;
 const REACH: f64 = 4.0;
 /// Final fraction of `REACH` over which the limit falls to zero.
 const RAMP: f64 = 0.6;
-/// Vessels closer than this, in sums of their radii, almost touch: their walls may intersect.
+/// Vessels closer than this, in sums of their radii, almost touch.
 const CLOSE: f64 = 1.02;
-/// Corresponding distance in a network with overlaps. Walls of vessels in one block fuse at this distance.
-const CLOSE_BESIDE_OVERLAPS: f64 = 1.05;
 /// Maximum limit for an overlap, in sums of its radii: a vessel that crosses another axis has to move by one.
 const DEMANDED: f64 = 2.0;
 
@@ -78,9 +77,18 @@ impl Leashes {
         far
     }
 
-    /// Vessels whose walls may intersect, though their tubes need not overlap.
-    pub(super) fn near(frame: &Frame, overlaps: bool) -> Overlaps {
-        widened(frame, if overlaps { CLOSE_BESIDE_OVERLAPS } else { CLOSE })
+    /// Vessels whose walls may intersect, though their tubes do not overlap.
+    pub(super) fn near(frame: &Frame) -> Overlaps {
+        widened(frame, CLOSE)
+    }
+
+    /// Overlaps, plus released vessels that almost touch: walls deviate slightly from the radius.
+    pub(super) fn close(frame: &Frame, overlaps: &Overlaps) -> Overlaps {
+        let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
+        let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
+        let mut close = widened(frame, CLOSE);
+        close.pairs.retain(|o| overlapping.contains(&o.edges) || o.nodes.iter().flatten().any(is_loose));
+        close
     }
 
     /// Raises the limits of nodes near overlaps: first to the initial limit, then by doubling.

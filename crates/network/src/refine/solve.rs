@@ -22,8 +22,6 @@ const FALL: f64 = 0.7;
 const RISE: f64 = 1.1;
 /// Interval between bend insertions, as a fraction of the iterations.
 const BENDS: f64 = 0.125;
-/// Counts of overlaps before the vessels of a measured network may bend.
-const COUNTS_BEFORE_BENDS: usize = 3;
 /// Number of first iterations that are all sampled, if any are.
 const EARLY: usize = 10;
 /// Maximum bend intervals without improvement before the loop stops.
@@ -56,7 +54,7 @@ pub(super) fn solve(
     leashes: Option<Leashes>,
     progress: &dyn Progress,
 ) -> Result<Moved, RefineError> {
-    let mut solver = Solver::new(skeleton, params, leashes, given.overlaps > 0);
+    let mut solver = Solver::new(skeleton, params, leashes);
     solver.divide();
     let start = solver.sample(0, 0);
     let at = |iteration| progress.at(Stage::Move, iteration as u64, params.iterations as u64);
@@ -115,15 +113,10 @@ struct Best {
 }
 
 impl Best {
-    /// Keeps the solver's state if it improves the score and no protected metric is worse than in the input. Returns the
-    /// overlaps, and vessels that almost touch if only such vessels move.
+    /// Keeps the solver's state if it improves the score and no protected metric is worse than in the input.
     fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
-        let (figures, mut overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
-        let mut score = figures.score();
-        if solver.leashes.is_some() {
-            overlaps = solver.near();
-            score = [figures.overlaps, 0, overlaps.pairs.len(), 0];
-        }
+        let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
+        let score = if solver.leashes.is_some() { [figures.overlaps, 0, 0, 0] } else { figures.score() };
         let held = figures.worse_than(&self.given, &solver.params.hold).is_empty();
         if held && self.score.is_none_or(|best| score <= best) {
             if self.score != Some(score) {
@@ -140,7 +133,7 @@ impl Best {
         overlaps
     }
 
-    /// True if no overlaps, and no vessels that almost touch or uncuttable branches, remain. The plain count treats pieces of one polyline as far pairs,
+    /// True if no overlaps or uncuttable branches remain. The plain count treats pieces of one polyline as far pairs,
     /// and short pieces fail equation 11. Both are ignored here.
     fn is_perfect(&self) -> bool {
         self.score.is_some_and(|s| s[0] == 0 && s[2] == 0)
@@ -151,10 +144,6 @@ struct Solver<'a> {
     params: &'a RefineParams,
     /// Displacement limits, if only overlapping vessels move.
     leashes: Option<Leashes>,
-    /// True if vessels of the input overlap.
-    has_overlaps: bool,
-    /// Number of counts of overlaps.
-    counts: usize,
     frame: Frame,
     unit: f64,
     contacts: Contacts,
@@ -166,7 +155,7 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(skeleton: Skeleton, params: &'a RefineParams, leashes: Option<Leashes>, has_overlaps: bool) -> Self {
+    fn new(skeleton: Skeleton, params: &'a RefineParams, leashes: Option<Leashes>) -> Self {
         let unit = paper_unit(&skeleton);
         let mut frame = Frame::new(skeleton, params.free_terminals, params.furthest * unit, unit);
         if leashes.is_some() {
@@ -175,8 +164,6 @@ impl<'a> Solver<'a> {
         let mut solver = Self {
             params,
             leashes,
-            has_overlaps,
-            counts: 0,
             frame,
             unit,
             contacts: Contacts::default(),
@@ -262,11 +249,9 @@ impl<'a> Solver<'a> {
         let before = std::mem::replace(&mut self.frame.urgent, vec![false; self.frame.origin.len()]);
         for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
             self.frame.urgent[node.index()] = true;
-            // A vessel that still overlaps may bend.
-            let may_bend = self.leashes.is_some() && self.counts >= COUNTS_BEFORE_BENDS;
-            self.frame.is_bend[node.index()] |= may_bend && before[node.index()];
+            // A vessel that overlaps for two counts may bend.
+            self.frame.is_bend[node.index()] |= self.leashes.is_some() && before[node.index()];
         }
-        self.counts += 1;
         let bends = match (self.params.bends, self.leashes) {
             (false, _) => 0,
             (true, None) => add_bends(&mut self.frame, overlaps),
@@ -275,16 +260,12 @@ impl<'a> Solver<'a> {
         self.bends += bends;
         self.frame.rejoin();
         if let Some(leashes) = self.leashes {
-            let again = if bends > 0 { Some(self.near()) } else { None };
-            leashes.loosen(&mut self.frame, again.as_ref().unwrap_or(overlaps));
+            let again = if bends > 0 { Some(self.frame.skeleton.overlaps(&self.frame.adjacency)) } else { None };
+            let close = Leashes::close(&self.frame, again.as_ref().unwrap_or(overlaps));
+            leashes.loosen(&mut self.frame, &close);
         }
         self.restart();
         bends
-    }
-
-    /// Vessels that overlap or almost touch.
-    fn near(&self) -> Overlaps {
-        Leashes::near(&self.frame, self.has_overlaps)
     }
 
     /// Divides the vessels that overlap or almost touch, if all others are fixed.
@@ -292,15 +273,19 @@ impl<'a> Solver<'a> {
         if self.leashes.is_none() || !self.params.bends {
             return;
         }
-        let near = self.near();
+        let overlaps = self.frame.skeleton.overlaps(&self.frame.adjacency);
+        let near = if overlaps.pairs.is_empty() { Leashes::near(&self.frame) } else { overlaps };
         self.bends += divide_near(&mut self.frame, &near);
         self.frame.rejoin();
         self.restart();
     }
 
-    /// Releases vessels that overlap or almost touch if all others are fixed. Returns false if nothing may move.
+    /// Releases overlapping vessels if all others are fixed, or vessels that almost touch if none overlap. Returns false if
+    /// nothing may move.
     fn loosen(&mut self, overlaps: &Overlaps) -> bool {
         let Some(leashes) = self.leashes else { return true };
+        let near = if overlaps.pairs.is_empty() { Some(Leashes::near(&self.frame)) } else { None };
+        let overlaps = near.as_ref().unwrap_or(overlaps);
         leashes.loosen(&mut self.frame, overlaps);
         !overlaps.pairs.is_empty()
     }

@@ -189,7 +189,7 @@ fn polylines_keep_their_shape() {
         let at = |j: usize| refined.skeleton.nodes[j].position;
         let (u, v) = (at(i) - at(i - 1), at(i + 1) - at(i));
         let turn = u.cross(&v).norm().atan2(u.dot(&v)).to_degrees();
-        assert!(turn < 30.0, "{turn} at {i}");
+        assert!(turn < 25.0, "{turn} at {i}");
     }
 }
 

@@ -46,7 +46,9 @@ pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64
         if again.is_empty() {
             return;
         }
-        again.into_iter().for_each(|i| enough[i] = 1.0);
+        for i in again {
+            enough[i] = 1.0;
+        }
     }
     place(&vec![1.0; groups.count]);
 }
