@@ -23,13 +23,16 @@ pub struct Goals<'a> {
     pub regions: &'a [RegionGoals],
 }
 
+/// Edge length as a function of the position.
+pub type SizeFunction = Box<dyn Fn(&Point3) -> f64>;
+
 /// Goals in a region, in addition to the general ones.
 #[derive(Default)]
 pub struct RegionGoals {
     /// Maximum volume.
     pub max_volume: Option<f64>,
     /// Edge length wanted at a point.
-    pub size: Option<Box<dyn Fn(&Point3) -> f64>>,
+    pub size: Option<SizeFunction>,
 }
 
 impl std::fmt::Debug for RegionGoals {
