@@ -160,7 +160,7 @@ impl Networks {
         };
         let overlaps = network.overlaps(&adjacency).pairs;
         let deep = overlaps.iter().filter(|o| o.distance < HOPELESS * o.radii && !at_tip(o));
-        deep.take(SEARCHED).any(|overlap| is_far(overlap))
+        deep.take(SEARCHED).any(&mut is_far)
     }
 
     /// True if vessels that leave no common bifurcation overlap, with axes closer than a share of their radii.
