@@ -85,7 +85,8 @@ impl<'a> ExactRecovery<'a> {
         (self.start.push.s.c, self.start.made)
     }
 
-    /// Tries one strategy. Each part may take `share` times the usual operations. After a failure, the parts that it recovered are kept.
+    /// Tries one strategy. Each part may take `share` times the usual operations. After a failure, the parts that it
+    /// recovered are kept.
     ///
     /// # Errors
     /// [`TetError::EdgeMeets`]; [`TetError::Stuck`] if no floating-point position off the surface exists or the vertex
