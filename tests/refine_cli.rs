@@ -54,7 +54,9 @@ fn a_network_that_overlaps_is_refined_and_has_a_valid_mesh() {
     );
     assert_eq!(both.status.code(), Some(0), "{}", String::from_utf8_lossy(&both.stderr));
     assert_eq!(json(&both)["refine"]["result"]["overlaps"], 0);
-    assert_eq!(std::fs::read(at("again.vtp")).unwrap(), std::fs::read(at("out.vtp")).unwrap());
+    // The network of the mesh has no overlaps either. Few overlaps are removed locally, so it is not that of `refine`.
+    let info = json(&run(&["info", "--json"], &[("", &at("again.vtp"))]));
+    assert_eq!(info["overlaps"]["pairs"].as_array().map(Vec::len), Some(0));
 }
 
 #[test]

@@ -28,7 +28,17 @@ impl Shared {
     fn crossing() -> Self {
         let folder = folder();
         let network = folder.path().join("crossing.swc");
-        let text = "1 0 -20 0 0 1 -1\n2 0 20 0 0 1 1\n3 0 0 -20 0.5 1 -1\n4 0 0 20 0.5 1 3\n";
+        // Five pairs of crossing tubes: too many for the local refinement, which is not stored.
+        let pair = |i: u32| {
+            let (first, y) = (4 * i + 1, 60 * i);
+            let [b, c, d] = [first + 1, first + 2, first + 3];
+            format!(
+                "{first} 0 -20 {y} 0 1 -1\n{b} 0 20 {y} 0 1 {first}\n{c} 0 0 {} 0.5 1 -1\n{d} 0 0 {} 0.5 1 {c}\n",
+                f64::from(y) - 20.0,
+                y + 20
+            )
+        };
+        let text: String = (0..5).map(pair).collect();
         fs::write(&network, text).expect("written");
         Self { folder, network, options: vec!["--refine", "50"] }
     }

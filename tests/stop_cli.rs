@@ -200,7 +200,7 @@ fn other_verbs_end_as_any_program_does() {
 }
 
 /// Writes a lattice of vessels that overlap, whose only block fails in every attempt.
-fn overlapping_lattice(path: &Path) {
+fn overlapping_lattice(path: &Path, radius: u32) {
     const SIDE: usize = 6;
     let places: Vec<[usize; 3]> = (0..SIDE.pow(3)).map(|i| [i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)]).collect();
     let lines: Vec<[usize; 2]> = (0..places.len())
@@ -216,7 +216,7 @@ fn overlapping_lattice(path: &Path) {
         vec![format!("LINES {} {}", lines.len(), 3 * lines.len())],
         lines.iter().map(|[a, b]| format!("2 {a} {b}")).collect(),
         vec![format!("POINT_DATA {}", places.len()), "SCALARS Radius double 1".into(), "LOOKUP_TABLE default".into()],
-        vec!["10".into(); places.len()],
+        vec![radius.to_string(); places.len()],
     ];
     fs::write(path, text.concat().join("\n") + "\n").expect("written");
 }
@@ -226,7 +226,7 @@ fn overlapping_lattice(path: &Path) {
 fn a_stop_request_is_honoured_at_any_moment() {
     let folder = folder();
     let lattice = folder.path().join("lattice.vtk");
-    overlapping_lattice(&lattice);
+    overlapping_lattice(&lattice, 10);
     let out = folder.path().join("a.vtu");
     let tree = fixture("tree_30.vtp");
     let cases: [(&Path, &[&str]); 3] =
@@ -265,7 +265,7 @@ fn a_stop_request_is_honoured_at_any_moment() {
 fn blocks_that_cannot_be_meshed_end() {
     let folder = folder();
     let lattice = folder.path().join("lattice.vtk");
-    overlapping_lattice(&lattice);
+    overlapping_lattice(&lattice, 13);
     let out = folder.path().join("a.vtu");
     let start = Instant::now();
     let output = mesh(&lattice, &out, &[]);

@@ -324,7 +324,7 @@ fn several_surfaces_are_one_complex_with_regions() {
     );
     assert_code(&output, FINE);
     let regions = json(&output)["report"]["regions"].as_array().expect("a list").clone();
-    assert_eq!(regions.iter().map(|r| r["id"].as_i64()).collect::<Vec<_>>(), [Some(1), Some(7)]);
+    assert_eq!(regions.iter().map(|r| r["id"].as_i64()).collect::<Vec<_>>(), [Some(2), Some(7)]);
     let volume = regions[1]["volume"].as_f64().expect("a number");
     assert!((volume - 1.0).abs() < 1e-12, "{volume}");
     let mesh = read_mesh(&out).expect("a mesh").volume;

@@ -46,6 +46,7 @@ impl SurfaceContent {
     /// Sets the markers of the faces of the file.
     pub(super) fn marked(mut self, of_faces: Vec<i32>) -> Self {
         self.markers = match self.face_of.as_slice() {
+            _ if of_faces.is_empty() => of_faces,
             [] => of_faces,
             face_of => face_of.iter().map(|&face| of_faces.get(face as usize).copied().unwrap_or(0)).collect(),
         };

@@ -10,7 +10,7 @@ use super::vtu::Recounted;
 use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
 use crate::file::FileError;
 use anastomesh_mesh::adjacency::boundary_faces;
-use anastomesh_mesh::check::{check_tets, check_volume};
+use anastomesh_mesh::check::check_tets;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::StopsAfter;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
@@ -257,7 +257,7 @@ fn prisms_are_whole_cells_in_vtu_and_msh_and_split_when_read() {
         write_mesh_with(&options, &path, &slab(), &MeshNotes::default(), &()).unwrap();
         let read = read_mesh(&path).unwrap().volume;
         assert_eq!(read.mesh.tets.len(), 12, "{name}");
-        assert!(check_volume(&read, None).failed().next().is_none(), "{name}");
+        assert!(check_tets(&read.mesh, None).failed().next().is_none(), "{name}");
         // The same prisms again, and the sides of the inlet.
         let mixed = MixedMesh::of(&read);
         assert!(mixed.cells.iter().all(|cell| cell.vertices().len() == 6), "{name}");
