@@ -4,7 +4,7 @@ use super::complex::Complex;
 use super::delaunay;
 use super::error::TetError;
 use super::recover::exact::{ExactRecovery, Missing, RecoveryStrategy};
-use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_turned};
+use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
@@ -42,18 +42,20 @@ struct Origin {
 type Recovered = (Complex, RecoverySummary);
 
 /// Recovers the rest after flips. The strategies of one start are repeated while they recover anything. All are tried
-/// with a small budget before any gets a larger one.
+/// with a small budget before any gets a larger one. `before_flips` are the edges missing in the Delaunay complex.
 pub(super) fn recover_rest(
     r: &Request,
     points: &[Point3],
     complex: Complex,
-    missing: Missing,
+    (missing, before_flips): (Missing, &[[u32; 2]]),
 ) -> Result<Recovered, TetError> {
     let flat = flat_height(&r.surface.points);
     let single = flat_height_in_single(&r.surface.points);
     let edges = missing.edges;
-    let is_turned = lies_turned(r.surface, edges, flat) || has_flat(&complex, flat, edges.len());
-    let turned = single.filter(|&thickness| lies_turned(r.surface, edges, thickness)).or(is_turned.then_some(flat));
+    let turned_within = |height| [edges, before_flips].iter().any(|edges| lies_turned(r.surface, edges, height));
+    let is_turned =
+        lies_in_planes(r.surface, edges, flat) || turned_within(flat) || has_flat(&complex, flat, edges.len());
+    let turned = single.filter(|&height| turned_within(height)).or(is_turned.then_some(flat));
     let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
     let thick = |thickness| Attempt::thick(thickness, &RecoveryStrategy::TURNED);
     let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();

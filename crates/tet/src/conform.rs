@@ -10,6 +10,7 @@ use super::progress::Stage;
 use super::recover::exact::Missing;
 use super::recover::{self, RecoverySummary, Rule};
 use super::request::Request;
+use super::survey::survey;
 use super::{contacts, delaunay, sized};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
@@ -42,6 +43,7 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary, usize
     let mut complex = delaunay::delaunay_watched(&points, r.watch)
         .map_err(|e| name_interior(e, surface.points.len(), points.len() - 8))?;
     r.watch.report(Stage::Delaunay, 1, 1)?;
+    let (before_flips, _) = survey(&mut complex, surface, r.edges);
     let (edges, triangles) = match recover::recover(&mut complex, surface, r.edges, Rule::Positive, r.watch) {
         Ok(summary) => return Ok((complex, summary, points.len())),
         Err(TetError::NotRecovered { edges, triangles }) => (edges, triangles),
@@ -52,7 +54,7 @@ pub(super) fn conforming(r: &Request) -> Result<(Complex, RecoverySummary, usize
     contacts::no_contacts(surface, r.watch)?;
     contacts::no_points_in_triangles(surface)?;
     let missing = Missing { edges: &edges, triangles: &triangles };
-    let (complex, summary) = recover_rest(r, &points, complex, missing)?;
+    let (complex, summary) = recover_rest(r, &points, complex, (missing, &before_flips))?;
     Ok((complex, summary, points.len()))
 }
 

@@ -34,7 +34,7 @@ use march::{Crossing, crossings, piercing_edges};
 pub(super) use removal::remove_steiner_points;
 pub(super) use rule::{Rule, flat_height, flat_height_in_single};
 use rustc_hash::FxHashMap;
-pub(super) use turned::lies_turned;
+pub(super) use turned::{lies_in_planes, lies_turned};
 
 /// Maximum passes over the missing edges before the first Steiner points. Nested flips are one deeper in each pass.
 const MAX_FLIP_PASSES: u32 = 10;
@@ -57,6 +57,12 @@ const WORTHWHILE: f64 = 0.75;
 
 /// Maximum lost edges and triangles for which slow progress is accepted in early rounds.
 const FEW: usize = 8;
+
+/// Steiner points do not help if flips leave more than this fraction of the missing parts, and more than [`MANY`].
+const HOPELESS: f64 = 0.2;
+
+/// See [`HOPELESS`].
+const MANY: usize = 100;
 
 /// Operations per flip that is tried, as counted by budgets.
 const OPERATIONS: usize = 20;
@@ -94,8 +100,11 @@ pub(super) fn recover(
         r.dissolve();
         let total = summary.missing_edges + summary.missing_triangles;
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
-        r.recover_edges(&mut lost_edges);
+        let abandoned = r.recover_edges(&mut lost_edges);
         r.stopped.map_or(Ok(()), Err)?;
+        if abandoned && r.met.is_none() {
+            break;
+        }
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         lost_faces.retain(|&f| r.met.is_some() || r.stopped.is_some() || !r.recover_face(f));
         r.stopped.map_or(Ok(()), Err)?;
@@ -108,7 +117,8 @@ pub(super) fn recover(
         }
         let worthwhile = (lost as f64) < WORTHWHILE * before as f64 || (lost <= FEW && round < MAX_STEINER_PASSES / 2);
         before = lost;
-        if !worthwhile {
+        let hopeless = round == 0 && lost > MANY && lost as f64 > HOPELESS * total as f64;
+        if hopeless || !worthwhile {
             break;
         }
         if round < MAX_STEINER_PASSES {
@@ -193,20 +203,46 @@ impl<'a> Recovery<'a> {
     }
 
     /// Recovers edges and removes them from `lost`, in passes with deeper and deeper flips. After Steiner points one pass
-    /// with the largest depth follows.
-    fn recover_edges(&mut self, lost: &mut Vec<[u32; 2]>) {
+    /// with the largest depth follows. Returns true if it gave up because flips are hopeless.
+    fn recover_edges(&mut self, lost: &mut Vec<[u32; 2]>) -> bool {
         let round = self.round;
         let first = if round == 0 { 0 } else { MAX_FLIP_PASSES - 1 };
+        let missing = if round == 0 { lost.clone() } else { Vec::new() };
         for pass in first..MAX_FLIP_PASSES {
             let before = lost.len();
             (self.round, self.depth) = (round + pass, 1 + pass);
-            lost.retain(|&edge| self.met.is_some() || self.stopped.is_some() || !self.recover_edge(edge));
+            let (mut tried, mut failed, mut abandoned) = (0, 0, false);
+            lost.retain(|&edge| {
+                if abandoned || self.met.is_some() || self.stopped.is_some() {
+                    return true;
+                }
+                tried += 1;
+                let fails = !self.recover_edge(edge);
+                failed += usize::from(fails);
+                abandoned = round == 0 && fails && failed == MANY && 2 * failed > tried && self.is_turned(&missing);
+                fails
+            });
+            if abandoned {
+                (self.round, self.depth) = (round, MAX_FLIP_PASSES);
+                return true;
+            }
             let few = ((before - lost.len()) as f64) < GAIN * before as f64;
             if lost.is_empty() || self.met.is_some() || self.stopped.is_some() || (few && pass >= FIRST_PASSES) {
                 break;
             }
         }
         (self.round, self.depth) = (round, MAX_FLIP_PASSES);
+        false
+    }
+
+    /// True if most of the edges lie in planes up to rounding.
+    fn is_turned(&self, edges: &[[u32; 2]]) -> bool {
+        let points = &self.surface.points;
+        let height = match self.rule {
+            Rule::Positive => flat_height_in_single(points).unwrap_or(flat_height(points)),
+            Rule::Thick(height) => height,
+        };
+        lies_turned(self.surface, edges, height) || lies_in_planes(self.surface, edges, height)
     }
 
     /// Recovers an edge by flipping away its crossings, from alternate ends.

@@ -25,6 +25,7 @@ mod queue;
 mod sectors;
 mod segments;
 mod space;
+mod state;
 mod ways;
 mod wider;
 
@@ -33,13 +34,13 @@ use crate::error::TetError;
 use crate::input::SurfaceEdges;
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
-use level::level_out;
 use one::ExactSummary;
 pub(crate) use parts::Missing;
 use push::Push;
 use queue::{Failed, Queue};
 use segments::Segments;
 use space::Space;
+use state::State;
 pub(crate) use ways::RecoveryStrategy;
 
 /// Exact recovery of the missing parts in a complex that has the rest of the surface with its triangles frozen. The
@@ -132,26 +133,6 @@ impl<'a> ExactRecovery<'a> {
                 Err(error)
             }
         }
-    }
-}
-
-/// A complex and the edges and triangles of the surface that it lacks.
-#[derive(Clone)]
-struct State<'a> {
-    push: Push<'a>,
-    edges: Vec<[u32; 2]>,
-    triangles: Vec<u32>,
-    /// Steiner points made by exact recovery.
-    made: usize,
-}
-
-impl State<'_> {
-    /// Recovers edges in facet planes. Returns `None` if more than `share` of the edges would remain missing.
-    fn leveled(&self, edges: &SurfaceEdges, share: f64, watch: &Watch) -> Result<Option<Self>, TetError> {
-        let mut push = self.push.clone();
-        let missing = Missing { edges: &self.edges, triangles: &self.triangles };
-        let left = level_out(&mut push, edges, missing, share, watch)?;
-        Ok(left.map(|(edges, triangles)| Self { push, edges, triangles, made: self.made }))
     }
 }
 

@@ -1,11 +1,11 @@
 //! Recovery of parts one after another. A part that fails is undone and waits until all others are recovered. Then it
 //! is tried in other orders, and with the other kind of cavity; by then its obstacles have changed.
 
-use super::State;
 use super::level::level_out;
 use super::one::{ExactSummary, about_input, recover_part};
 use super::parts::{Missing, Part, parts};
 use super::push::Push;
+use super::state::State;
 use super::ways::RecoveryStrategy;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::input::SurfaceEdges;
@@ -191,16 +191,4 @@ fn out_of_budget(part: &Part, triangles: &[[u32; 3]]) -> TetError {
     let triangle = part.triangles.first().map(|&t| Obstacle::Triangle(triangles[t as usize]));
     let part = part.edges.first().map(|&edge| Obstacle::Edge(edge)).or(triangle).unwrap_or(Obstacle::Point(0));
     TetError::Stuck { part, reason: Stuck::Budget }
-}
-
-impl<'a> State<'a> {
-    /// State that lacks the given parts.
-    fn of<'p>(push: Push<'a>, missing: impl Iterator<Item = &'p Part>, summary: ExactSummary) -> Self {
-        let (mut edges, mut triangles) = (Vec::new(), Vec::new());
-        for part in missing {
-            edges.extend(&part.edges);
-            triangles.extend(&part.triangles);
-        }
-        Self { push, edges, triangles, made: summary.steiner_points }
-    }
 }
