@@ -7,11 +7,12 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 47] = [
+const RARE: [&str; 51] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
     "barrier-rate",
+    "certificate",
     "config",
     "core",
     "data",
@@ -21,9 +22,10 @@ const RARE: [&str; 47] = [
     "every",
     "follow",
     "format",
-    "from",
     "free-terminals",
+    "from",
     "frozen-joints",
+    "hole",
     "joint",
     "keep-going",
     "keep-joints",
@@ -39,6 +41,7 @@ const RARE: [&str; 47] = [
     "max-tets",
     "metrics",
     "plot",
+    "prisms",
     "progress",
     "radius-array",
     "radius-scale",
@@ -54,6 +57,7 @@ const RARE: [&str; 47] = [
     "smooth-noise",
     "stretch",
     "to",
+    "uniform",
     "version",
 ];
 

@@ -39,8 +39,8 @@ pub struct PreparedRun {
     pub notes: Vec<NetworkNote>,
     /// Inlets, and why they are.
     pub inlets: Inlets,
-    /// Terminals, by their indices in the file, that were extended by less than asked for because another vessel is in the
-    /// way, with the length in radii.
+    /// Terminals that were extended by less than asked for because another vessel is in the way: index in the file, and length
+    /// in radii.
     pub cut_short: Vec<(u32, f64)>,
     /// Plan, with the named inlets as roots.
     pub plan: MeshPlan,

@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
 const MAX_RETRACTIONS: usize = 4;
 
-/// Relative volume error of a refined network above which it is meshed without refinement, if only vessels of one branch
-/// point overlap: those may be kept apart.
+/// Relative volume error of a refined network above which it is meshed without refinement. Applies if only vessels of one
+/// branch point overlap.
 const MAX_VOLUME_ERROR: f64 = 0.05;
 
 /// Factor on the clearance of the refinement where walls became joined although no vessels overlap. Walls come closer to each

@@ -168,8 +168,8 @@ impl Tetrahedralizer {
 
     /// Limits the layers to triangles with these markers; an empty list stands for all triangles.
     ///
-    /// Flat parts with other markers, such as inlets, shrink towards their centres in their plane, and a ring of layers
-    /// takes the rest of their area. These parts then have more triangles than the input. Layers end with thickness zero
+    /// Flat parts with other markers, such as inlets, shrink towards their centres. A ring of layers takes the rest of their
+    /// area. These parts then have more triangles than the input. Layers end with thickness zero
     /// at parts that are curved or not star-shaped, which stay unchanged.
     #[must_use]
     pub fn layers_on(mut self, markers: impl Into<Vec<i32>>) -> Self {

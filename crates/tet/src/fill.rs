@@ -47,8 +47,8 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     Ok(Filled { mesh, places, left_out, regions, region_count, ignored_seeds, recovery, optimize, refine })
 }
 
-/// Carves a complex. Returns the filled part, the parts of the input outside of it, and the number of its points that are
-/// Steiner points: those with indices of at least `given`, which are its last.
+/// Carves a complex. Returns the filled part, the parts of the input outside, and the number of Steiner points. These are the
+/// last points of the part; in `complex` their indices are at least `given`.
 fn carved(r: &Request, complex: &Complex, given: usize) -> Result<(Complex, LeftOut, usize), TetError> {
     let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
     r.watch.ask()?;

@@ -5,9 +5,9 @@ use rustc_hash::FxHashMap;
 
 /// Polyhedra of a mixed mesh, each with the number of its first tetrahedron or triangle in the lists that receive them.
 ///
-/// A prism is split with the diagonals that begin at the lowest vertices of its first triangle, the outer one in the
-/// layers of this program. If two prisms disagree about a diagonal, all begin at the lowest vertices of the
-/// quadrilaterals instead (Dompierre et al., 'How to subdivide pyramids, prisms and hexahedra into tetrahedra', 1999).
+/// A prism is split with the diagonals that begin at the lowest vertices of its first triangle. This is the outer one in
+/// the layers of this program. If two prisms disagree about a diagonal, all begin at the lowest vertices of
+/// quadrilaterals. Source: Dompierre et al., 'How to subdivide pyramids, prisms and hexahedra into tetrahedra', 1999.
 ///
 /// ```
 /// use anastomesh_mesh::stacks::Polyhedra;

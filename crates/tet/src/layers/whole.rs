@@ -36,8 +36,8 @@ pub struct LayerSummary {
     pub thin: usize,
     /// Vertex with the thinnest layers and their fraction of the thickness asked for; `None` if all are complete.
     pub thinnest: Option<(u32, f64)>,
-    /// Vertices without layers, since no direction leads away from all their triangles, the inside is too narrow, or they
-    /// are on the rim of a cap that keeps its triangles.
+    /// Vertices without layers. No direction leads away from all their triangles, or the inside is too narrow. Others are on
+    /// the rim of a cap that keeps its triangles.
     pub without: Vec<u32>,
     /// Flat parts without layers that shrank in their plane, with a ring of layers around them.
     pub shrunk_caps: usize,
@@ -53,8 +53,8 @@ pub struct Layered {
     pub outer: Option<(TriMesh, Vec<u32>)>,
 }
 
-/// Fills a closed surface as requested, with layers along the triangles with one of the markers `on`, or along all if
-/// there are none.
+/// Fills a closed surface as requested, with layers along the triangles with one of the markers `on`. An empty list
+/// stands for all triangles.
 pub fn layered(r: &Request, layers: &Layers, (markers, on): (&[i32], &[i32])) -> Result<Layered, TetError> {
     // Without inner points: this only finds the filled side of each triangle and checks feasibility.
     let plain = fill(&Request { interior: &Interior::None, refinement: None, optimize: false, ..*r })?;

@@ -73,7 +73,7 @@ impl Allowance {
     }
 
     /// True if a tetrahedron at a needle is about as good as the needle allows. The needle may be one of its faces, or share
-    /// an edge with it: then the short edge of the needle, or its far corners, are near as well.
+    /// an edge with it. Then the short edge or the far corners of the needle are near.
     pub fn is_exhausted(&self, v: &[u32; 4], ratio: f64) -> bool {
         let marks = v.map(|w| self.has_needle(w));
         let edges = TET_EDGES.iter().filter(|[i, j]| marks[*i] && marks[*j]);

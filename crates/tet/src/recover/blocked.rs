@@ -63,9 +63,8 @@ impl Recovery<'_> {
         done
     }
 
-    /// Removes spokes from the ring of an edge until the edge can be removed. Flips, and removals of the reflex edges that
-    /// block them, are nested as in the n-to-m flips of TetGen (Si, 'TetGen, a Delaunay-based quality tetrahedral mesh
-    /// generator', 2015).
+    /// Removes spokes from the ring of an edge until the edge can be removed. Removals of the reflex edges that block a flip are
+    /// nested as in n-to-m flips (Si, 'TetGen, a Delaunay-based quality tetrahedral mesh generator', 2015).
     fn shrink_and_clear(&mut self, t: u32, p: u32, q: u32, depth: u32) -> bool {
         let mut ring = EdgeRing::default();
         let mut start = t;

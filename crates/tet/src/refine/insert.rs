@@ -233,8 +233,8 @@ impl Refiner<'_, '_> {
         self.cavity.push(t);
     }
 
-    /// Collects the tetrahedra around `start` whose circumspheres contain `p`. If the point is to keep `away` from the
-    /// wall, returns false if it lies in the smallest sphere of a fixed triangle that it sees. Such points lead to ever
+    /// Collects the tetrahedra around `start` whose circumspheres contain `p`. With `away`, returns false if the point
+    /// lies in the smallest sphere of a fixed triangle that it sees. Such points lead to ever
     /// more points without gain.
     fn dig(&mut self, start: u32, p: &Point3, away: bool) -> bool {
         self.stamp.resize(self.c.slots(), 0);
