@@ -140,7 +140,7 @@ fn a_tip_extended_by_more_than_its_vessel_is_no_success() {
     let mut swc = Swc::default();
     let [_, fork] = swc.line([0.0, 0.0, -15.0], [0.0; 3], 1.0, 0.5, None);
     swc.line([0.0; 3], [0.0, 0.0, 15.0], 1.0, 0.5, Some(fork));
-    let [_, tip] = swc.line([0.0; 3], [0.8, 0.0, 0.8], 1.0, 0.3, Some(fork));
+    let [_, tip] = swc.line([0.0; 3], [1.0, 0.0, 1.4], 1.0, 0.3, Some(fork));
     let (network, out) = (swc.save(&folder, "stub.swc"), folder.path().join("a.vtu"));
     let made = mesh(&network, &out, &["--keep-spurs", "--keep-doubles"]);
     let said = ends(&made, GATE_NOT_MET, "not faithful: ");

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 51] = [
+const RARE: [&str; 52] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -46,6 +46,7 @@ const RARE: [&str; 51] = [
     "radius-array",
     "radius-scale",
     "refined",
+    "region",
     "region-growth",
     "region-size",
     "repel-rate",
