@@ -285,15 +285,12 @@ impl Tetrahedralizer {
         };
         let count = |wanted: Place| filled.places.iter().filter(|&&p| p == wanted).count();
         let outside = &filled.left_out.triangles;
-        let (kept, origins, face_markers) = match outer {
-            Some((outer, origins)) => {
-                let markers = origins.iter().filter_map(|&t| plc.markers.get(t as usize).copied()).collect();
-                (Cow::Owned(outer), origins, markers)
-            }
-            None => {
-                let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(surface), outside) };
-                (filled.left_out.kept_surface(surface), origins, without(plc.markers, outside))
-            }
+        let (kept, origins, face_markers) = if let Some((outer, origins)) = outer {
+            let markers = origins.iter().filter_map(|&t| plc.markers.get(t as usize).copied()).collect();
+            (Cow::Owned(outer), origins, markers)
+        } else {
+            let origins = if outside.is_empty() { Vec::new() } else { without(&triangle_ids(surface), outside) };
+            (filled.left_out.kept_surface(surface), origins, without(plc.markers, outside))
         };
         Ok(Tetrahedralization {
             faces: kept.triangles.iter().zip(&filled.places).map(outward).collect(),

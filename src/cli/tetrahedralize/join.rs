@@ -3,7 +3,7 @@
 use super::input::Input;
 use super::numbers::FileNumbers;
 use anastomesh_mesh::geometry::place_key;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::Path;
 
 /// Joins surfaces. Equal points of different files become one. Each file is a marker, named like the file, or has one
@@ -11,7 +11,7 @@ use std::path::Path;
 pub fn join(parts: Vec<Input>) -> Input {
     let mut all = Input { marked: true, ..Input::default() };
     let mut point_of_place: FxHashMap<_, u32> = FxHashMap::default();
-    let mut known_faces: FxHashMap<[u32; 3], ()> = FxHashMap::default();
+    let mut known_faces: FxHashSet<[u32; 3]> = FxHashSet::default();
     let (mut before, mut faces_before) = (0, 0);
     let (mut point_of, mut face_of) = (Vec::new(), Vec::new());
     for part in parts {
@@ -34,7 +34,7 @@ pub fn join(parts: Vec<Input>) -> Input {
             let triangle = triangle.map(|v| own[v as usize]);
             let mut key = triangle;
             key.sort_unstable();
-            if known_faces.insert(key, ()).is_none() {
+            if known_faces.insert(key) {
                 all.plc.surface.triangles.push(triangle);
                 all.plc.markers.push(names(i));
                 face_of.push(faces_before + i as u32);

@@ -4,7 +4,7 @@ use super::content::SurfaceContent;
 use super::error::SurfaceFault;
 use super::faces::Faces;
 use crate::text::Place;
-use crate::vtk_xml::{ElementId, VtkXml};
+use crate::vtk_xml::{DataArray, ElementId, VtkXml};
 use anastomesh_mesh::geometry::Point3;
 
 /// Integer arrays of cells that are read as markers, in order of preference.
@@ -60,7 +60,7 @@ fn read_polygons(document: &VtkXml, piece: ElementId) -> Result<Vec<Vec<i64>>, S
     let Some(section) = document.child(piece, "Polys").filter(|_| count > 0) else { return Ok(Vec::new()) };
     let ints = |name: &'static str| {
         let array = document.arrays(section).find(|(found, _)| *found == name);
-        let values = array.map(|(_, array)| document.read(array)).transpose()?.and_then(|array| array.into_ints());
+        let values = array.map(|(_, array)| document.read(array)).transpose()?.and_then(DataArray::into_ints);
         values.ok_or(SurfaceFault::Missing { what: name })
     };
     let (connectivity, offsets) = (ints("connectivity")?, ints("offsets")?);

@@ -11,7 +11,7 @@ mod packed;
 #[cfg(test)]
 mod tests;
 
-pub(super) use array::Values;
+pub(super) use array::{DataArray, Values};
 pub(super) use blocks::{Blocks, Packing, write_blocks, write_spaces};
 pub(super) use document::{ElementId, VtkXml};
 pub use error::VtkError;

@@ -67,7 +67,9 @@ pub fn layered(r: &Request, layers: &Layers, (markers, on): (&[i32], &[i32])) ->
     let wall = Wall::new(&surface, &is_wall, layers);
     let (inset, about) = match wall.inset(r, layers, &caps) {
         Err(error) if !error.is_stop() && caps.iter().any(|cap| cap.centre.is_some()) => {
-            caps.iter_mut().for_each(|cap| cap.centre = None);
+            for cap in &mut caps {
+                cap.centre = None;
+            }
             wall.inset(r, layers, &caps)?
         }
         made => made?,
