@@ -1,5 +1,6 @@
 """Options of the tetrahedralization of surfaces."""
 
+from collections.abc import Sequence
 from typing import Annotated, TypedDict
 
 from ._option import Option
@@ -28,7 +29,13 @@ class FillingOptions(TypedDict, total=False):
     min_dihedral: Annotated[float | None, Option("Minimum dihedral angle in degrees, where the boundary allows it")]
     max_volume: Annotated[float | None, Option("Maximum volume of a tetrahedron; a mesh that exceeds it is an InvalidError")]
     size: Annotated[float | None, Option("Maximum edge length inside; if absent, any that the growth gives")]
-    growth: Annotated[float, Option("Growth of edge lengths per layer of tetrahedra, away from the surface; at least 1.1", 2.0)]
+    growth: Annotated[float, Option("Growth of edge lengths per layer of tetrahedra, away from the surface; at least 1.1", 2)]
     uniform: Annotated[bool, Option("Fill the inside evenly with the mean edge length of the surface", False)]
     max_tets: Annotated[int, Option("Refuse meshes that would have more tetrahedra", 40_000_000)]
+    region_size: Annotated[
+        Sequence[str] | None, Option("Maximum edge length in regions, as '3=0.5' for region 3; one text for each region")
+    ]
+    region_growth: Annotated[
+        Sequence[str] | None, Option("Growth in regions, below that of growth, as '3=1.5'; one text for each region")
+    ]
     split: Annotated[bool, Option("Triangles of the input may be split, as TetGen does without Y", False)]
