@@ -12,6 +12,9 @@ use anastomesh_mesh::geometry::Point3;
 /// Operations of a strategy in the first round: per missing edge or triangle, plus a constant.
 const OPERATIONS: (u64, u64) = (60_000, 20_000_000);
 
+/// Factor of the budget for recovery in planes, which comes first.
+const PLANE_SHARE: u64 = 8;
+
 /// Maximum rounds over all strategies.
 const MAX_ROUNDS: u32 = 5;
 
@@ -25,6 +28,8 @@ struct Attempt<'a> {
     ways: &'static [RecoveryStrategy],
     recovery: Option<ExactRecovery<'a>>,
     summary: RecoverySummary,
+    /// Maximum passes of flips over the missing edges; `None` for the usual number.
+    passes: Option<u32>,
     /// Complex, missing edges and triangles, and summary before any strategy.
     origin: Option<Origin>,
 }
@@ -58,7 +63,9 @@ pub(super) fn recover_rest(
     let turned = single.filter(|&height| turned_within(height)).or(is_turned.then_some(flat));
     let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
     let thick = |thickness| Attempt::thick(thickness, &RecoveryStrategy::TURNED);
-    let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();
+    // After few flips most of the missing edges lie in planes, where they are exchanged at once.
+    let plane = |height| Attempt { passes: Some(1), ..Attempt::thick(height, &RecoveryStrategy::PLANES) };
+    let mut attempts: Vec<Attempt> = turned.into_iter().flat_map(|height| [plane(height), thick(height)]).collect();
     attempts.push(Attempt::given(r, points, complex, missing, flat));
     let others = [Some(flat), single].into_iter().flatten().filter(|&thickness| turned != Some(thickness));
     attempts.extend(others.map(thick));
@@ -99,12 +106,12 @@ impl<'a> Attempt<'a> {
         let (edges, triangles) = (missing.edges.to_vec(), missing.triangles.to_vec());
         let origin = Origin { complex: complex.clone(), edges, triangles, summary: summary.clone() };
         let recovery = Some(ExactRecovery::new(complex, (r.surface, r.edges), missing, flat));
-        Self { flat: None, ways: &RecoveryStrategy::GIVEN, recovery, summary, origin: Some(origin) }
+        Self { flat: None, ways: &RecoveryStrategy::GIVEN, recovery, summary, passes: None, origin: Some(origin) }
     }
 
     /// Starts with flips that make nothing thinner than `flat`.
     fn thick(flat: f64, ways: &'static [RecoveryStrategy]) -> Self {
-        Self { flat: Some(flat), ways, recovery: None, summary: RecoverySummary::default(), origin: None }
+        Self { flat: Some(flat), ways, recovery: None, summary: RecoverySummary::default(), passes: None, origin: None }
     }
 
     /// Returns to the complex left by flips. Parts that are recovered may be in the way of others.
@@ -135,6 +142,7 @@ impl<'a> Attempt<'a> {
         {
             return Ok(Some(done));
         }
+        let share = if self.passes.is_some() { PLANE_SHARE * share } else { share };
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
@@ -184,11 +192,17 @@ impl<'a> Attempt<'a> {
     /// Repeats the flips. Returns the complex if they recover the whole surface.
     fn start(&mut self, r: &Request<'a>, points: &[Point3], flat: f64) -> Result<Option<Recovered>, TetError> {
         let mut complex = delaunay::delaunay_watched(points, r.watch)?;
-        match recover::recover(&mut complex, r.surface, r.edges, Rule::Thick(flat), r.watch) {
+        let flips = (Rule::Thick(flat), self.passes.unwrap_or(recover::MAX_FLIP_PASSES));
+        match recover::recover_with(&mut complex, r.surface, r.edges, flips, r.watch) {
             Ok(summary) => Ok(Some((complex, summary))),
             Err(TetError::NotRecovered { edges, triangles }) => {
                 let missing = Missing { edges: &edges, triangles: &triangles };
-                *self = Self { ways: self.ways, flat: Some(flat), ..Self::given(r, points, complex, missing, flat) };
+                *self = Self {
+                    ways: self.ways,
+                    flat: Some(flat),
+                    passes: self.passes,
+                    ..Self::given(r, points, complex, missing, flat)
+                };
                 Ok(None)
             }
             Err(error) => Err(error),

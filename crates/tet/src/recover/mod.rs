@@ -37,7 +37,7 @@ use rustc_hash::FxHashMap;
 pub(super) use turned::{lies_in_planes, lies_turned};
 
 /// Maximum passes over the missing edges before the first Steiner points. Nested flips are one deeper in each pass.
-const MAX_FLIP_PASSES: u32 = 10;
+pub(super) const MAX_FLIP_PASSES: u32 = 10;
 
 /// A further pass is made if the last one recovered at least this fraction of the edges.
 const GAIN: f64 = 0.04;
@@ -87,8 +87,20 @@ pub(super) fn recover(
     rule: Rule,
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
+    recover_with(c, surface, edges, (rule, MAX_FLIP_PASSES), watch)
+}
+
+/// As [`recover`], with at most `passes` over the missing edges. A single one is followed by no Steiner points.
+pub(super) fn recover_with(
+    c: &mut Complex,
+    surface: &TriMesh,
+    edges: &SurfaceEdges,
+    (rule, passes): (Rule, u32),
+    watch: &Watch,
+) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
     let mut r = Recovery::new(c, surface, (edges, rule), watch);
+    r.passes = passes;
     let mut summary = RecoverySummary {
         missing_edges: lost_edges.len(),
         missing_triangles: lost_faces.len(),
@@ -102,7 +114,7 @@ pub(super) fn recover(
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
         let abandoned = r.recover_edges(&mut lost_edges);
         r.stopped.map_or(Ok(()), Err)?;
-        if abandoned && r.met.is_none() {
+        if (abandoned || passes == 1) && !lost_edges.is_empty() && r.met.is_none() {
             break;
         }
         watch.report(Stage::Recover, total - lost_edges.len() - lost_faces.len(), total)?;
@@ -152,6 +164,8 @@ struct Recovery<'a> {
     /// Flips tried and not yet counted.
     tried: usize,
     round: u32,
+    /// Maximum passes over the missing edges before Steiner points.
+    passes: u32,
     /// Proof that the surface intersects itself.
     met: Option<TetError>,
     watch: &'a Watch<'a>,
@@ -185,6 +199,7 @@ impl<'a> Recovery<'a> {
             failed: FxHashMap::default(),
             tried: 0,
             round: 0,
+            passes: MAX_FLIP_PASSES,
             met: None,
             watch,
             stopped: None,
@@ -208,7 +223,7 @@ impl<'a> Recovery<'a> {
         let round = self.round;
         let first = if round == 0 { 0 } else { MAX_FLIP_PASSES - 1 };
         let missing = if round == 0 { lost.clone() } else { Vec::new() };
-        for pass in first..MAX_FLIP_PASSES {
+        for pass in first..MAX_FLIP_PASSES.min(first + self.passes) {
             let before = lost.len();
             (self.round, self.depth) = (round + pass, 1 + pass);
             let (mut tried, mut failed, mut abandoned) = (0, 0, false);

@@ -29,6 +29,9 @@ impl RecoveryStrategy {
     /// Strategies for the complex left by flips, the fastest first.
     pub(crate) const GIVEN: [Self; 4] = [Self::seen(0), Self::deep(false, 0), Self::seen(1), Self::deep(true, 2)];
 
+    /// Strategies for a surface in planes, after few flips.
+    pub(crate) const PLANES: [Self; 2] = [Self::deep(true, 0), Self::deep(true, 0).unconditional()];
+
     /// Strategies for a complex without flat tetrahedra.
     pub(crate) const TURNED: [Self; 5] =
         [Self::deep(true, 0), Self::level(1), Self::deep(true, 2), Self::deep(false, 0), Self::deep(false, 1)];
