@@ -12,7 +12,7 @@ use anastomesh_mesh::geometry::Point3;
 /// Operations of a strategy in the first round: per missing edge or triangle, plus a constant.
 const OPERATIONS: (u64, u64) = (60_000, 20_000_000);
 
-/// Factor of the budget for recovery in planes, which comes first.
+/// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 8;
 
 /// Maximum rounds over all strategies.
@@ -65,8 +65,9 @@ pub(super) fn recover_rest(
     let thick = |thickness| Attempt::thick(thickness, &RecoveryStrategy::TURNED);
     // After few flips most of the missing edges lie in planes, where they are exchanged at once.
     let plane = |height| Attempt { passes: Some(1), ..Attempt::thick(height, &RecoveryStrategy::PLANES) };
-    let mut attempts: Vec<Attempt> = turned.into_iter().flat_map(|height| [plane(height), thick(height)]).collect();
+    let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();
     attempts.push(Attempt::given(r, points, complex, missing, flat));
+    attempts.extend(turned.map(plane));
     let others = [Some(flat), single].into_iter().flatten().filter(|&thickness| turned != Some(thickness));
     attempts.extend(others.map(thick));
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
