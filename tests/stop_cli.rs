@@ -221,6 +221,13 @@ fn overlapping_lattice(path: &Path, radius: u32) {
     fs::write(path, text.concat().join("\n") + "\n").expect("written");
 }
 
+fn remove_all_but_lattice(folder: &Path) {
+    for left in entries(folder).iter().filter(|name| *name != "lattice.vtk") {
+        let path = folder.join(left);
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+    }
+}
+
 /// Stop requests at several moments of a run, in the order of a low-discrepancy sequence.
 #[test]
 fn a_stop_request_is_honoured_at_any_moment() {
@@ -229,8 +236,11 @@ fn a_stop_request_is_honoured_at_any_moment() {
     overlapping_lattice(&lattice, 10);
     let out = folder.path().join("a.vtu");
     let tree = fixture("tree_30.vtp");
-    let cases: [(&Path, &[&str]); 3] =
-        [(&lattice, &[]), (&lattice, &["--refine"]), (&tree, &["--rho", "9", "--memory", "20GiB"])];
+    let cases: [(&Path, &[&str]); 3] = [
+        (&lattice, &["--rho", "5"]),
+        (&lattice, &["--rho", "5", "--refine"]),
+        (&tree, &["--rho", "9", "--memory", "20GiB"]),
+    ];
     let mut stopped = 0;
     for (i, (network, options)) in cases.into_iter().cycle().take(12).enumerate() {
         let mut child = start("mesh", &[network, Path::new("-o"), &out], options);
@@ -241,7 +251,7 @@ fn a_stop_request_is_honoured_at_any_moment() {
             std::thread::sleep(Duration::from_millis(2));
         }
         if child.try_wait().expect("a child").is_some() {
-            let _ = fs::remove_file(&out);
+            remove_all_but_lattice(folder.path());
             continue;
         }
         signal(&child, "-TERM");
@@ -252,10 +262,7 @@ fn a_stop_request_is_honoured_at_any_moment() {
             stopped += 1;
             assert_eq!(entries(folder.path()), ["lattice.vtk"], "case {i}");
         }
-        for left in entries(folder.path()).iter().filter(|name| *name != "lattice.vtk") {
-            let path = folder.path().join(left);
-            let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
-        }
+        remove_all_but_lattice(folder.path());
     }
     assert!(stopped >= 6, "{stopped}");
 }
