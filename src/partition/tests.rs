@@ -507,8 +507,7 @@ proptest! {
                     continue;
                 }
                 let least = rim_clearance(cluster, end, &own);
-                // Mostly above 1.12. In about 1 of 4,000 networks a vessel beside the cut comes closer; below 1 in 1 of 30,000.
-                prop_assert!(least > 1.0, "{least} {end:?}");
+                prop_assert!(least > 1.12, "{least} {end:?}");
             }
         }
     }
