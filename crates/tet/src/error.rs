@@ -95,6 +95,10 @@ pub enum InputArray {
     Markers,
     /// Edge lengths, one for each point.
     Sizes,
+    /// Caps, one for each triangle.
+    Caps,
+    /// Thicknesses of a shell, one for each point.
+    Thicknesses,
 }
 
 impl std::fmt::Display for InputArray {
@@ -102,6 +106,8 @@ impl std::fmt::Display for InputArray {
         f.write_str(match self {
             Self::Markers => "markers of triangles",
             Self::Sizes => "edge lengths at points",
+            Self::Caps => "caps of triangles",
+            Self::Thicknesses => "thicknesses of a shell at points",
         })
     }
 }

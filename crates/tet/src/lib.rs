@@ -100,6 +100,7 @@ mod recover;
 pub(crate) mod refine;
 mod regions;
 mod request;
+mod shells;
 mod sized;
 mod split;
 pub(crate) mod star;
@@ -121,6 +122,7 @@ pub use options::{Boundary, Interior, Refinement, Sizing};
 pub use plc::{InputKind, InputPart, LeftOut, Plc, PlcRef, Region};
 pub use recover::RecoverySummary;
 pub use refine::RefineReport;
+pub use shells::{Ring, Shell, Shells};
 
 /// The example of the README is a test.
 #[cfg(doctest)]

@@ -2,6 +2,7 @@
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3};
+use rayon::prelude::*;
 
 /// Length of the first step of a ray, in mean edge lengths of the surface, and growth factor of the steps.
 const STEP: f64 = 2.0;
@@ -9,12 +10,18 @@ const LONGER: f64 = 1.5;
 
 /// Half the distance from each vertex to the opposite surface, along unit vectors `ways`; zero where the vector is.
 pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
+    let furthest = extent(&surface.points);
+    clear_widths(surface, ways, |_| furthest).into_iter().map(|width| 0.5 * width).collect()
+}
+
+/// Distance from each vertex to the opposite surface along unit vectors `ways`, up to a maximum. Zero where the vector
+/// is. `ways` may end before the vertices.
+pub fn clear_widths(surface: &TriMesh, ways: &[Vec3], most: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
     let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
     let boxes: Vec<Aabb> = surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect();
     let tree = Bvh::new(&boxes);
-    let whole = boxes.iter().fold(Aabb::EMPTY, |sum, aabb| sum.union(aabb));
-    let (first, furthest) = (STEP * surface.mean_edge(), (whole.max - whole.min).norm());
-    let across = |v: u32, from: &Point3, way: &Vec3| {
+    let first = STEP * surface.mean_edge();
+    let across = |v: u32, from: &Point3, way: &Vec3, furthest: f64| {
         let (mut begin, mut step) = (0.0, first);
         while begin < furthest {
             let end = begin + step;
@@ -26,16 +33,23 @@ pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
                 }
             });
             if nearest <= end {
-                return nearest;
+                return nearest.min(furthest);
             }
             (begin, step) = (end, step * LONGER);
         }
         furthest
     };
-    let half = |(v, (from, way)): (u32, (&Point3, &Vec3))| {
-        if *way == Vec3::zeros() { 0.0 } else { 0.5 * across(v, from, way) }
+    let width = |v: usize| {
+        let way = &ways[v];
+        if *way == Vec3::zeros() { 0.0 } else { across(v as u32, &surface.points[v], way, most(v)) }
     };
-    (0..).zip(surface.points.iter().zip(ways)).map(half).collect()
+    (0..ways.len()).into_par_iter().map(width).collect()
+}
+
+/// Diagonal of the bounding box.
+fn extent(points: &[Point3]) -> f64 {
+    let all = Aabb::of_points(points);
+    (all.max - all.min).norm()
 }
 
 /// Distance along a ray to a triangle, edges included (Möller, Trumbore 1997). Rounding is acceptable here.

@@ -119,26 +119,28 @@ fn stuck(error: &TetError, surface: &TriMesh) -> Vec<u32> {
 }
 
 /// Current offset of each vertex.
-struct Ways<'a> {
+pub struct Ways<'a> {
     places: &'a Places<'a>,
-    shares: Vec<f64>,
+    /// Fraction of its wanted offset that each vertex has.
+    pub shares: Vec<f64>,
     /// Factor of the offset of an obstructing vertex.
-    drawn_back: f64,
+    pub drawn_back: f64,
 }
 
 impl<'a> Ways<'a> {
-    fn new(places: &'a Places<'a>) -> Self {
+    pub fn new(places: &'a Places<'a>) -> Self {
         Self { places, shares: vec![1.0; places.wanted.len()], drawn_back: OFFSET_FACTOR }
     }
 
-    fn inner(&self) -> Vec<Point3> {
+    /// Current positions.
+    pub fn inner(&self) -> Vec<Point3> {
         let Places { surface, wanted, .. } = self.places;
         let all = surface.points.iter().zip(wanted).zip(&self.shares);
         all.map(|((outer, wanted), &share)| toward(outer, wanted, share)).collect()
     }
 
     /// Reduces the offsets of vertices, and grades those around them. Returns false if none could be reduced.
-    fn reduce_offsets(&mut self, vertices: &[u32]) -> bool {
+    pub fn reduce_offsets(&mut self, vertices: &[u32]) -> bool {
         let mut vertices = vertices.to_vec();
         vertices.sort_unstable();
         vertices.dedup();
@@ -177,7 +179,7 @@ impl<'a> Ways<'a> {
 }
 
 /// Lowers heights until neighbours differ by at most `grade` times their distance.
-pub(super) fn lower(heights: &mut [f64], points: &[Point3], triangles: &[[u32; 3]], grade: f64) {
+pub fn lower(heights: &mut [f64], points: &[Point3], triangles: &[[u32; 3]], grade: f64) {
     let mut changed = true;
     while changed {
         changed = false;

@@ -19,7 +19,8 @@ mod tests;
 mod whole;
 
 pub use direction::Directions;
-pub use inset::{Inset, Places, inset};
-pub use stack::{Numbers, rims, toward};
+pub use half_width::clear_widths;
+pub use inset::{Inset, Places, Ways, inset, lower};
+pub use stack::{Numbers, Stack, rims, toward};
 pub use whole::LayerSummary;
 pub(super) use whole::{Layered, layered};

@@ -3,6 +3,7 @@
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{TetMesh, TriMesh};
+use rayon::prelude::*;
 
 /// Indices of the copies of vertices: first the vertices of the surface, then the copies of each, from the wall
 /// inwards. A vertex without copies is its own copy in each layer.
@@ -13,21 +14,22 @@ pub struct Numbers {
     /// True for wall vertices that also have triangles off the wall.
     is_rim: Vec<bool>,
     layers: u32,
-    /// Number of vertices with copies.
-    copied: u32,
+    /// Vertices with copies.
+    of_slot: Vec<u32>,
 }
 
 impl Numbers {
     /// Numbers of the vertices of a surface, some of which have copies in each layer.
     pub fn new(copied: impl IntoIterator<Item = bool>, is_rim: Vec<bool>, layers: u32) -> Self {
-        let mut next = 0;
-        let mut slot = |copied: bool| {
-            let slot = copied.then_some(next);
-            next += u32::from(copied);
-            slot
+        let mut of_slot = Vec::new();
+        let mut slot = |(v, copied): (u32, bool)| {
+            copied.then(|| {
+                of_slot.push(v);
+                of_slot.len() as u32 - 1
+            })
         };
-        let slot = copied.into_iter().map(&mut slot).collect();
-        Self { slot, is_rim, layers, copied: next }
+        let slot = (0..).zip(copied).map(&mut slot).collect();
+        Self { slot, is_rim, layers, of_slot }
     }
 
     /// Copy of a vertex in a layer, counted from the wall.
@@ -38,9 +40,34 @@ impl Numbers {
         }
     }
 
+    /// Ring around a flat cap, from its rim outwards: the sides of the prisms at the rim. Each triangle has its layer, and
+    /// is oriented like those of the cap.
+    pub fn ring(&self, cap: &[[u32; 3]]) -> Vec<(u32, [u32; 3])> {
+        let mut out = Vec::new();
+        for [a, b] in rim(cap) {
+            for layer in 0..self.layers {
+                out.extend(self.side([b, a], layer).into_iter().map(|triangle| (layer, triangle)));
+            }
+        }
+        out
+    }
+
+    /// Vertex of the surface that a vertex or copy belongs to.
+    pub fn origin(&self, copy: u32) -> u32 {
+        match copy.checked_sub(self.slot.len() as u32) {
+            Some(copy) => self.of_slot[(copy / self.layers) as usize],
+            None => copy,
+        }
+    }
+
+    /// Number of layers.
+    pub fn layers(&self) -> u32 {
+        self.layers
+    }
+
     /// Number of vertices including all copies.
     pub fn len(&self) -> u32 {
-        self.slot.len() as u32 + self.copied * self.layers
+        (self.slot.len() + self.of_slot.len() * self.layers as usize) as u32
     }
 
     /// Returns `true` if the number of vertices is zero.
@@ -67,22 +94,17 @@ impl Numbers {
     pub fn disc(&self, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let inner = |v: u32| self.copy(v, self.layers);
         let mut out: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(inner)).collect();
-        let mut sides: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        sides.sort_unstable();
-        let rim = sides.iter().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err());
-        for &[a, b] in rim {
-            for layer in 0..self.layers {
-                let [a0, a1, b0, b1] =
-                    [(a, layer), (a, layer + 1), (b, layer), (b, layer + 1)].map(|(v, i)| self.copy(v, i));
-                let two = if self.rank(a) < self.rank(b) {
-                    [[a0, b0, b1], [a0, b1, a1]]
-                } else {
-                    [[a0, b0, a1], [b0, b1, a1]]
-                };
-                out.extend(two.into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
-            }
+        for edge in rim(triangles) {
+            let sides = (0..self.layers).flat_map(|layer| self.side(edge, layer));
+            out.extend(sides.filter(|[a, b, c]| a != b && b != c && c != a));
         }
         out
+    }
+
+    /// Side of a prism at a directed edge of the wall: two triangles that have the edge in its direction.
+    fn side(&self, [a, b]: [u32; 2], layer: u32) -> [[u32; 3]; 2] {
+        let [a0, a1, b0, b1] = [(a, layer), (a, layer + 1), (b, layer), (b, layer + 1)].map(|(v, i)| self.copy(v, i));
+        if self.rank(a) < self.rank(b) { [[a0, b0, b1], [a0, b1, a1]] } else { [[a0, b0, a1], [b0, b1, a1]] }
     }
 
     /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
@@ -120,6 +142,11 @@ impl<'a> Stack<'a> {
         Self { wall, numbers, points }
     }
 
+    /// Creates the stack from the positions of all copies, as `numbers` counts them.
+    pub fn of_copies(wall: &'a [[u32; 3]], numbers: Numbers, points: Vec<Point3>) -> Self {
+        Self { wall, numbers, points }
+    }
+
     /// Wall triangles with a tetrahedron that is not positive.
     pub fn turned(&self) -> Vec<[u32; 3]> {
         let is_turned = |triangle: &&[u32; 3]| {
@@ -128,11 +155,22 @@ impl<'a> Stack<'a> {
                 orient3d(a, b, c, d) <= 0.0
             })
         };
-        self.wall.iter().filter(is_turned).copied().collect()
+        self.wall.par_iter().filter(is_turned).copied().collect()
     }
 
-    fn tets_at(&self, triangle: [u32; 3]) -> impl Iterator<Item = [u32; 4]> {
+    /// Tetrahedra at a wall triangle, from the wall inwards.
+    pub fn tets_at(&self, triangle: [u32; 3]) -> impl Iterator<Item = [u32; 4]> {
         (0..self.numbers.layers).flat_map(move |layer| self.numbers.prism(triangle, layer))
+    }
+
+    /// Positions of all copies.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// Positions of all copies.
+    pub fn into_points(self) -> Vec<Point3> {
+        self.points
     }
 
     /// Joins all layers with the `core` mesh inside, whose points begin with the inner positions. The result's points
@@ -148,6 +186,13 @@ impl<'a> Stack<'a> {
         points.extend_from_slice(&core.points[given as usize..]);
         (TetMesh { points, tets }, of_layers)
     }
+}
+
+/// Directed edges that only one of some triangles has, in ascending order.
+fn rim(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mut sides: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+    sides.sort_unstable();
+    sides.iter().filter(|[a, b]| sides.binary_search(&[*b, *a]).is_err()).copied().collect()
 }
 
 /// Point at a fraction of the way between two points; exactly `to` at 1.

@@ -1,0 +1,218 @@
+//! Shells: layers of prisms on the outside of a closed surface, for instance a vessel's wall around its lumen.
+//!
+//! Each wall vertex has one outer position per shell on a straight line. Each wall triangle spans prisms between these,
+//! which are cut into tetrahedra as those of inner layers are (`layers`). At flat caps the shells end in flat rings. All
+//! prisms are positive by the exact predicate, and the outer surface does not intersect itself. A map without inversions
+//! that is one to one on the boundary is one to one inside, so the shells and a mesh of the inside form one valid mesh.
+//!
+//! Where the outside is too narrow, or the surface is so curved that prisms would invert, the shells become thinner
+//! (`heights`, `settle`). They never end.
+
+mod directions;
+mod heights;
+mod settle;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{InputArray, TetError};
+use crate::input;
+use crate::layer::Layers;
+use crate::plc::InputKind;
+use crate::progress::Watch;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::progress::Progress;
+use settle::{Given, Settled, settle};
+
+/// Fraction of the thickness asked for below which shells count as thin.
+const THIN: f64 = 0.5;
+
+/// One shell. Lengths are in the unit of the surface.
+///
+/// ```
+/// use anastomesh_tet::Shell;
+///
+/// let wall = Shell::new(vec![0.1; 42]).layers(3).growth(1.5);
+/// assert_eq!(wall.layers, 3);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Shell {
+    /// Thickness wanted at each point of the surface, above 0.
+    pub thickness: Vec<f64>,
+    /// Number of layers of prisms, at least 1.
+    pub layers: u32,
+    /// Ratio of the thickness of each layer to that of the previous one, outwards.
+    pub growth: f64,
+}
+
+anastomesh_mesh::setters!(Shell { layers: u32, growth: f64 });
+
+impl Shell {
+    /// Shell of two equal layers.
+    pub fn new(thickness: Vec<f64>) -> Self {
+        Self { thickness, layers: 2, growth: 1.0 }
+    }
+
+    /// Layers of this shell, without a thickness.
+    fn spacing(&self) -> Layers {
+        Layers::default().count(self.layers).growth(self.growth)
+    }
+}
+
+/// Shells around a surface. Points are numbered after those of the surface: index `surface.points.len() + i` is `points[i]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Shells {
+    /// Points outside the surface.
+    pub points: Vec<Point3>,
+    /// Positive tetrahedra.
+    pub tets: Vec<[u32; 4]>,
+    /// Shell of each tetrahedron; 0 is the innermost.
+    pub shell_of: Vec<u32>,
+    /// Outer side of each shell: images of the wall's triangles in their order, oriented outwards.
+    pub sides: Vec<Vec<[u32; 3]>>,
+    /// Flat ends of the shells at caps.
+    pub rings: Vec<Ring>,
+    /// Total thickness at each point of the surface, relative to the thickness wanted. 1 for points off the wall.
+    pub shares: Vec<f64>,
+}
+
+/// Flat end of a shell at a cap.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Ring {
+    /// Number of the cap.
+    pub cap: u32,
+    /// Shell; 0 is the innermost.
+    pub shell: u32,
+    /// Triangles, oriented as those of the cap.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Shells {
+    /// Grows shells around a closed surface, which must be oriented outwards.
+    ///
+    /// `caps` has the cap of each triangle: flat parts without shells. `None` is the wall. `around` is a closed surface
+    /// outside, which the shells do not touch.
+    ///
+    /// ```
+    /// use anastomesh_tet::{Shell, Shells};
+    ///
+    /// let ball = anastomesh_mesh::shapes::sphere_surface(2);
+    /// let caps = vec![None; ball.triangles.len()];
+    /// let wall = Shell::new(vec![0.2; ball.points.len()]);
+    /// let made = Shells::around(&ball, &caps, &[wall], None, &())?;
+    /// assert_eq!(made.tets.len(), 6 * ball.triangles.len());
+    /// assert!(made.shares.iter().all(|&share| share == 1.0));
+    /// # Ok::<(), anastomesh_tet::TetError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TetError::WrongLength`], [`TetError::BadSize`] and [`TetError::Layers`] for invalid shells.
+    /// [`TetError::Open`] and [`TetError::SelfIntersection`] for surfaces that are not closed or intersect.
+    /// [`TetError::Stuck`] at a triangle where no shell fits. [`TetError::Cancelled`].
+    pub fn around(
+        surface: &TriMesh,
+        caps: &[Option<u32>],
+        shells: &[Shell],
+        around: Option<&TriMesh>,
+        progress: &dyn Progress,
+    ) -> Result<Self, TetError> {
+        let watch = Watch::asking(progress);
+        check(surface, caps, shells)?;
+        input::validate(surface, &[], InputKind::Closed)?;
+        let seen_from_inside = |(t, cap): (&[u32; 3], &Option<u32>)| cap.is_none().then_some([t[0], t[2], t[1]]);
+        let wall: Vec<[u32; 3]> = surface.triangles.iter().zip(caps).filter_map(seen_from_inside).collect();
+        let given = Given { surface, wall: &wall, caps, shells, around };
+        Ok(settle(&given, &watch)?.shells(&given))
+    }
+
+    /// Number of points with less than half of the thickness wanted.
+    pub fn thin(&self) -> usize {
+        self.shares.iter().filter(|share| **share < THIN).count()
+    }
+
+    /// Point with the least share of its thickness, and that share; `None` if all are complete.
+    pub fn thinnest(&self) -> Option<(u32, f64)> {
+        let less = (0..).zip(self.shares.iter().copied()).filter(|(_, share)| *share < 1.0 - 1e-9);
+        less.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Checks lengths and values.
+fn check(surface: &TriMesh, caps: &[Option<u32>], shells: &[Shell]) -> Result<(), TetError> {
+    let expect = |array, found, expected| {
+        if found == expected { Ok(()) } else { Err(TetError::WrongLength { array, found, expected }) }
+    };
+    expect(InputArray::Caps, caps.len(), surface.triangles.len())?;
+    for shell in shells {
+        expect(InputArray::Thicknesses, shell.thickness.len(), surface.points.len())?;
+        shell.spacing().check()?;
+        if let Some(&value) = shell.thickness.iter().find(|t| !(**t > 0.0 && t.is_finite())) {
+            return Err(TetError::BadSize { value });
+        }
+    }
+    Ok(())
+}
+
+/// Fraction of the distance to the outer position at which each copy of a point lies, shell by shell.
+fn depths(shells: &[Shell], v: usize) -> Vec<f64> {
+    let total: f64 = shells.iter().map(|shell| shell.thickness[v]).sum();
+    let mut before = 0.0;
+    let mut all = Vec::new();
+    for shell in shells {
+        let own = shell.thickness[v] / total;
+        all.extend(shell.spacing().depths().into_iter().map(|depth| before + own * depth));
+        before += own;
+    }
+    // The last one is the outer position, whatever rounding makes of the sum.
+    all.pop();
+    all.push(1.0);
+    all
+}
+
+/// First layer of each shell, and the number of all layers.
+fn first_layers(shells: &[Shell]) -> Vec<u32> {
+    let ends = shells.iter().scan(0, |sum, shell| {
+        *sum += shell.layers;
+        Some(*sum)
+    });
+    std::iter::once(0).chain(ends).collect()
+}
+
+impl Settled<'_> {
+    /// Result of the growth.
+    fn shells(self, given: &Given) -> Shells {
+        let Self { stack, shares } = self;
+        let first = first_layers(given.shells);
+        let shell_of_layer = |layer: u32| first.partition_point(|&start| start <= layer) as u32 - 1;
+        let mut made = Shells { shares, ..Shells::default() };
+        for &triangle in given.wall {
+            for (tet, layer) in stack.tets_at(triangle).zip((0..).flat_map(|layer| [layer; 3])) {
+                made.tets.push(tet);
+                made.shell_of.push(shell_of_layer(layer));
+            }
+        }
+        // The prisms see the wall from inside.
+        let outward = |[a, b, c]: [u32; 3], layer| [a, c, b].map(|v| stack.numbers.copy(v, layer));
+        made.sides = first[1..].iter().map(|&layer| given.wall.iter().map(|t| outward(*t, layer)).collect()).collect();
+        for (cap, triangles) in of_caps(given.surface, given.caps) {
+            let ring = stack.numbers.ring(&triangles);
+            for shell in 0..given.shells.len() as u32 {
+                let own = ring.iter().filter(|(layer, _)| shell_of_layer(*layer) == shell);
+                made.rings.push(Ring { cap, shell, triangles: own.map(|(_, triangle)| *triangle).collect() });
+            }
+        }
+        made.points = stack.into_points().split_off(given.surface.points.len());
+        made
+    }
+}
+
+/// Triangles of each cap, by cap.
+fn of_caps(surface: &TriMesh, caps: &[Option<u32>]) -> Vec<(u32, Vec<[u32; 3]>)> {
+    let mut all: Vec<(u32, [u32; 3])> =
+        caps.iter().zip(&surface.triangles).filter_map(|(cap, t)| cap.map(|cap| (cap, *t))).collect();
+    all.sort_by_key(|(cap, _)| *cap);
+    all.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|(_, t)| *t).collect())).collect()
+}

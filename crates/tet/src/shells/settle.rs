@@ -1,0 +1,135 @@
+//! Outer positions for which all prisms are positive, and the outer surface does not intersect itself.
+
+use super::directions::directions;
+use super::heights::heights;
+use super::{Shell, depths, of_caps};
+use crate::contacts::contacts;
+use crate::error::{Obstacle, Stuck, TetError};
+use crate::layers::{Numbers, Places, Stack, Ways, rims, toward};
+use crate::progress::Watch;
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::adjacency::vertices_of;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+
+/// Maximum passes that make shells thinner.
+const MAX_PASSES: usize = 60;
+/// Factor of the thickness at an obstacle, at first and after some passes.
+const FACTORS: [f64; 2] = [0.75, 0.4];
+/// Passes with the first factor.
+const PATIENT: usize = 20;
+
+/// Surface with its wall and the shells wanted.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'a> {
+    pub surface: &'a TriMesh,
+    /// Triangles of the wall, seen from inside.
+    pub wall: &'a [[u32; 3]],
+    pub caps: &'a [Option<u32>],
+    pub shells: &'a [Shell],
+    pub around: Option<&'a TriMesh>,
+}
+
+/// Shells with their final positions.
+pub(super) struct Settled<'a> {
+    pub stack: Stack<'a>,
+    /// Thickness of each vertex relative to that wanted.
+    pub shares: Vec<f64>,
+}
+
+/// Finds positions.
+pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>, TetError> {
+    let Given { surface, wall, caps, shells, around } = *given;
+    let points = &surface.points;
+    let ways = directions(surface, wall, caps);
+    if let Some(&t) = wall.iter().find(|t| t.iter().any(|&v| ways[v as usize] == Vec3::zeros())) {
+        return Err(TetError::Stuck { part: Obstacle::Triangle(t), reason: Stuck::Layer });
+    }
+    let on_wall = vertices_of(wall, points.len());
+    let wanted: Vec<f64> = (0..points.len()).map(|v| shells.iter().map(|shell| shell.thickness[v]).sum()).collect();
+    let heights = heights(&joined(surface, around), wall, &ways, &wanted);
+    let is_rim = rims(surface, |t| caps[t].is_none());
+    let numbers = Numbers::new(on_wall.iter().copied(), is_rim.clone(), shells.iter().map(|s| s.layers).sum());
+    let outside = Outside::new(&numbers, given);
+    let places = Places {
+        surface,
+        wall,
+        is_rim,
+        wanted: (0..points.len()).map(|v| points[v] + ways[v] * heights[v]).collect(),
+        is_held: on_wall.iter().map(|on_wall| !on_wall).collect(),
+        is_narrow: true,
+    };
+    let mut offsets = Ways::new(&places);
+    for pass in 0..MAX_PASSES {
+        watch.ask()?;
+        offsets.drawn_back = FACTORS[usize::from(pass >= PATIENT)];
+        let stack = Stack::of_copies(wall, numbers.clone(), copies(surface, &on_wall, &offsets.inner(), shells));
+        let mut obstacles = stack.turned();
+        let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
+        if obstacles.is_empty() {
+            obstacles = outside.meeting(stack.points());
+        }
+        let Some(&first) = obstacles.first() else {
+            let share = |v: usize| if on_wall[v] { offsets.shares[v] * heights[v] / wanted[v] } else { 1.0 };
+            return Ok(Settled { stack, shares: (0..points.len()).map(share).collect() });
+        };
+        if pass + 1 == MAX_PASSES || !offsets.reduce_offsets(obstacles.as_flattened()) {
+            return Err(TetError::Stuck { part: Obstacle::Triangle(first), reason });
+        }
+    }
+    Err(TetError::Stuck { part: Obstacle::Triangle(wall[0]), reason: Stuck::Layer })
+}
+
+/// The surface, and the obstacles with it.
+fn joined(surface: &TriMesh, around: Option<&TriMesh>) -> TriMesh {
+    let mut all = surface.clone();
+    if let Some(around) = around {
+        let first = all.points.len() as u32;
+        all.points.extend_from_slice(&around.points);
+        all.triangles.extend(around.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    all
+}
+
+/// Positions of the surface's points and of their copies.
+fn copies(surface: &TriMesh, on_wall: &[bool], outer: &[Point3], shells: &[Shell]) -> Vec<Point3> {
+    let mut all = surface.points.clone();
+    for v in (0..outer.len()).filter(|&v| on_wall[v]) {
+        all.extend(depths(shells, v).into_iter().map(|depth| toward(&surface.points[v], &outer[v], depth)));
+    }
+    all
+}
+
+/// Closed surface around the shells with its obstacles, in the numbers of the stack.
+struct Outside<'a> {
+    triangles: Vec<[u32; 3]>,
+    /// Triangle of the surface that each of these comes from; those of obstacles have none.
+    origins: Vec<[u32; 3]>,
+    around: Option<&'a TriMesh>,
+}
+
+impl<'a> Outside<'a> {
+    fn new(numbers: &Numbers, given: &Given<'a>) -> Self {
+        let Given { surface, wall, caps, around, .. } = *given;
+        let layers = numbers.layers();
+        let mut triangles: Vec<[u32; 3]> = wall.iter().map(|t| t.map(|v| numbers.copy(v, layers))).collect();
+        let mut origins = wall.to_vec();
+        for (_, cap) in of_caps(surface, caps) {
+            let ring = numbers.ring(&cap);
+            let base = |t: &[u32; 3]| t.map(|v| numbers.origin(v));
+            origins.extend(cap.iter().copied().chain(ring.iter().map(|(_, t)| base(t))));
+            triangles.extend(cap.into_iter().chain(ring.into_iter().map(|(_, t)| t)));
+        }
+        if let Some(around) = around {
+            triangles.extend(around.triangles.iter().map(|t| t.map(|v| v + numbers.len())));
+        }
+        Self { triangles, origins, around }
+    }
+
+    /// Triangles of the surface whose images intersect something.
+    fn meeting(&self, points: &[Point3]) -> Vec<[u32; 3]> {
+        let mut points = points.to_vec();
+        points.extend(self.around.iter().flat_map(|around| &around.points));
+        let pairs = contacts(&TriMesh { points, triangles: self.triangles.clone() });
+        pairs.into_iter().flatten().filter_map(|t| self.origins.get(t as usize).copied()).collect()
+    }
+}
