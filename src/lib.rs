@@ -38,6 +38,7 @@ mod block;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+mod domain;
 mod fidelity;
 mod partition;
 #[cfg(feature = "cli")]
@@ -74,6 +75,10 @@ pub mod meshing {
     };
     pub use crate::run::{
         Attempt, Defect, Fault, Limits, MeshingError, NetworkMesh, Networks, PreparedRun, RefinedAxis, Run, Strategy,
+    };
+    // Regions around the lumen.
+    pub use crate::domain::{
+        Domain, DomainError, DomainPlan, DomainPlanError, ShellPlan, ShellsReport, Thickness, TissuePlan, TissueShape,
     };
     // Its steps and reports.
     pub use crate::block::ThinLayers;

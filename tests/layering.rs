@@ -16,7 +16,7 @@ const PACKAGES: [&str; 7] = [
 ];
 
 /// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.
-const LAYERS: [(&str, u32); 13] = [
+const LAYERS: [(&str, u32); 14] = [
     ("main", 7),
     ("cli", 6),
     ("report", 5),
@@ -27,6 +27,7 @@ const LAYERS: [(&str, u32); 13] = [
     ("view", 2),
     ("block", 1),
     ("reduced", 1),
+    ("domain", 1),
     ("surface", 0),
     ("fidelity", 0),
     ("partition", 0),

@@ -1,0 +1,57 @@
+//! Errors of the regions around a lumen.
+
+use super::plan::DomainPlanError;
+use anastomesh_mesh::units::{counted, place};
+use anastomesh_tet::TetError;
+use std::io;
+
+/// Reason why there are no regions around a lumen.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DomainError {
+    /// The plan is invalid.
+    #[error(transparent)]
+    Plan(#[from] DomainPlanError),
+    /// No shell fits at a place.
+    #[error("no space for {shells} at {}: {source}", place(*at))]
+    Shell {
+        /// Names of the shells.
+        shells: String,
+        /// Place on the wall.
+        at: [f64; 3],
+        /// Reason.
+        source: TetError,
+    },
+    /// The organ's surface is not closed.
+    #[error("the surface around the tissue cannot be filled: {0}")]
+    Organ(TetError),
+    /// Vessels intersect the organ's surface, or lie outside.
+    #[error(
+        "{} of the vessels' wall {} the surface around the tissue, first at {}: give a surface around all vessels",
+        counted(*count, "triangle"), if *outside { "lie outside" } else { "intersect" }, place(*at)
+    )]
+    VesselsOutside {
+        /// Number of triangles of the wall.
+        count: usize,
+        /// True if they lie outside, false if they intersect the surface.
+        outside: bool,
+        /// Place of the first.
+        at: [f64; 3],
+    },
+    /// The tissue cannot be filled.
+    #[error("the tissue could not be filled: {0}")]
+    Tissue(TetError),
+    /// The lumen cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] io::Error),
+}
+
+impl DomainError {
+    /// True if the caller cancelled the run.
+    pub fn is_cancelled(&self) -> bool {
+        match self {
+            Self::Shell { source, .. } | Self::Organ(source) | Self::Tissue(source) => *source == TetError::Cancelled,
+            _ => false,
+        }
+    }
+}

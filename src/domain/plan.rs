@@ -1,0 +1,229 @@
+//! Options of the regions around a lumen.
+
+use anastomesh_mesh::TriMesh;
+use anastomesh_tet::{Layers, LayersError};
+use serde::Serialize;
+
+/// Thickness of a shell as a function of the vessel's radius r: `length + radii · r`.
+///
+/// ```
+/// use anastomesh::meshing::Thickness;
+///
+/// let arteriole = Thickness { length: 2.0, radii: 0.1 };
+/// assert_eq!(arteriole.at(30.0), 5.0);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Thickness {
+    /// Constant part, in the unit of the network.
+    pub length: f64,
+    /// Share of the radius.
+    pub radii: f64,
+}
+
+impl Thickness {
+    /// Thickness at a vessel of this radius.
+    pub fn at(&self, radius: f64) -> f64 {
+        self.length + self.radii * radius
+    }
+}
+
+/// Shell around the lumen or around another shell, for instance the vessel wall.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ShellPlan {
+    /// Name of the region.
+    pub name: String,
+    /// Thickness.
+    pub thickness: Thickness,
+    /// Number of layers of prisms.
+    pub layers: u32,
+    /// Ratio of the thickness of each layer to that of the previous one, outwards.
+    pub growth: f64,
+}
+
+anastomesh_mesh::setters!(ShellPlan { layers: u32, growth: f64 });
+
+impl ShellPlan {
+    /// Shell of two equal layers.
+    pub fn new(name: impl Into<String>, thickness: Thickness) -> Self {
+        Self { name: name.into(), thickness, layers: 2, growth: 1.0 }
+    }
+}
+
+/// Shape of the tissue around the vessels.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TissueShape {
+    /// Box around all vessels with this margin; `None`: 5 % of the diagonal, and at least the largest outer radius.
+    Box {
+        /// Margin, in the unit of the network.
+        margin: Option<f64>,
+    },
+    /// Closed surface around all vessels. Its triangles are kept.
+    Organ(TriMesh),
+}
+
+/// Tissue around the vessels.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TissuePlan {
+    /// Shape.
+    pub shape: TissueShape,
+    /// Maximum edge length, in the unit of the network; `None`: growth alone determines it.
+    pub size: Option<f64>,
+    /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels.
+    pub growth: f64,
+}
+
+anastomesh_mesh::setters!(TissuePlan { size: impl Into<Option<f64>>, growth: f64 });
+
+impl TissuePlan {
+    /// Default of `growth`.
+    pub const GROWTH: f64 = 1.3;
+
+    /// Tissue of this shape.
+    pub fn new(shape: TissueShape) -> Self {
+        Self { shape, size: None, growth: Self::GROWTH }
+    }
+}
+
+/// Regions around the lumen, from the inside outwards.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DomainPlan {
+    /// Shells.
+    pub shells: Vec<ShellPlan>,
+    /// Tissue.
+    pub tissue: Option<TissuePlan>,
+    /// Names of regions to leave out of the result.
+    pub without: Vec<String>,
+}
+
+anastomesh_mesh::setters!(DomainPlan {
+    shells: Vec<ShellPlan>,
+    tissue: impl Into<Option<TissuePlan>>,
+    without: Vec<String>,
+});
+
+/// Invalid plan of regions.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DomainPlanError {
+    /// A thickness is zero, negative or not finite for positive radii.
+    #[error(
+        "invalid thickness of {name}: {length} + {radii} r: give a length, a share of the radius, or a sum of both, above 0"
+    )]
+    Thickness {
+        /// Name of the shell.
+        name: String,
+        /// Constant part.
+        length: f64,
+        /// Share of the radius.
+        radii: f64,
+    },
+    /// Layers of a shell are out of range.
+    #[error("layers of {name}: {source}")]
+    Layers {
+        /// Name of the shell.
+        name: String,
+        /// Reason.
+        source: LayersError,
+    },
+    /// Two regions have one name.
+    #[error("two regions are called '{0}': give each a name of its own")]
+    SameName(String),
+    /// A name has characters other than letters, digits, `_` and `-`, or is empty.
+    #[error("invalid name of a region '{0}': use letters, digits, '_' and '-'")]
+    Name(String),
+    /// A region to leave out does not exist.
+    #[error("no region is called '{name}'; there are {known}")]
+    Unknown {
+        /// Name of the region.
+        name: String,
+        /// Names of all regions.
+        known: String,
+    },
+    /// All regions are left out.
+    #[error("all regions are left out: keep at least one")]
+    Nothing,
+    /// A margin, size or growth is out of range.
+    #[error("invalid {what} of the tissue {value}: {range}")]
+    Tissue {
+        /// Quantity.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Valid values.
+        range: &'static str,
+    },
+}
+
+/// Name of the region inside the vessels.
+pub const LUMEN: &str = "lumen";
+/// Name of the region around the vessels.
+pub const TISSUE: &str = "tissue";
+
+impl DomainPlan {
+    /// True if the lumen is the only region.
+    pub fn is_plain(&self) -> bool {
+        self.shells.is_empty() && self.tissue.is_none()
+    }
+
+    /// Names of all regions, from the inside outwards. The id of a region is its place here, from 1.
+    pub fn names(&self) -> Vec<&str> {
+        let shells = self.shells.iter().map(|shell| shell.name.as_str());
+        std::iter::once(LUMEN).chain(shells).chain(self.tissue.iter().map(|_| TISSUE)).collect()
+    }
+
+    /// Checks names and ranges.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn validate(&self) -> Result<(), DomainPlanError> {
+        let names = self.names();
+        for (i, &name) in names.iter().enumerate() {
+            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-') {
+                return Err(DomainPlanError::Name(name.into()));
+            }
+            if names[..i].contains(&name) {
+                return Err(DomainPlanError::SameName(name.into()));
+            }
+        }
+        self.shells.iter().try_for_each(ShellPlan::validate)?;
+        self.tissue.as_ref().map_or(Ok(()), TissuePlan::validate)?;
+        if let Some(name) = self.without.iter().find(|name| !names.contains(&name.as_str())) {
+            return Err(DomainPlanError::Unknown { name: name.clone(), known: names.join(", ") });
+        }
+        if names.iter().all(|name| self.without.iter().any(|out| out == name)) {
+            return Err(DomainPlanError::Nothing);
+        }
+        Ok(())
+    }
+}
+
+impl ShellPlan {
+    fn validate(&self) -> Result<(), DomainPlanError> {
+        let Thickness { length, radii } = self.thickness;
+        let is_valid = length >= 0.0 && radii >= 0.0 && length + radii > 0.0 && length.is_finite() && radii.is_finite();
+        if !is_valid {
+            return Err(DomainPlanError::Thickness { name: self.name.clone(), length, radii });
+        }
+        let layers = Layers::default().count(self.layers).growth(self.growth);
+        layers.check().map_err(|source| DomainPlanError::Layers { name: self.name.clone(), source })
+    }
+}
+
+impl TissuePlan {
+    fn validate(&self) -> Result<(), DomainPlanError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let fault = |what, value, range| Err(DomainPlanError::Tissue { what, value, range });
+        match (&self.shape, self.size) {
+            (TissueShape::Box { margin: Some(margin) }, _) if !positive(*margin) => {
+                fault("margin", *margin, "give a length above 0")
+            }
+            (_, Some(size)) if !positive(size) => fault("size", size, "give an edge length above 0"),
+            _ if !(self.growth >= 1.1 && self.growth.is_finite()) => fault("growth", self.growth, "give 1.1 or more"),
+            _ => Ok(()),
+        }
+    }
+}
