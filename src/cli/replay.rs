@@ -111,7 +111,7 @@ impl Args {
                 expectation: None,
                 generator: concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
                 options: format!("replay of {}", dump.name()),
-                regions: false,
+                regions: Vec::new(),
                 flow: None,
             };
             write_mesh(path, &volume, &notes).map_err(|e| Failure::input(e.to_string()))?;

@@ -59,7 +59,7 @@ impl<M> NetworkMesh<M> {
             expectation.terminals = caps.alone();
         }
         let flow = self.caps.as_ref().map(Caps::flow);
-        MeshNotes { expectation: Some(expectation), generator, options, regions: false, flow }
+        MeshNotes { expectation: Some(expectation), generator, options, regions: Vec::new(), flow }
     }
 
     /// Replaces the mesh.

@@ -14,3 +14,9 @@ pub fn tet_key(mut tet: [u32; 4]) -> [u32; 4] {
     tet.sort_unstable();
     tet
 }
+
+/// True if two triangles with the same vertices have the same orientation.
+#[inline]
+pub fn same_turn(a: [u32; 3], b: [u32; 3]) -> bool {
+    a == b || a == [b[1], b[2], b[0]] || a == [b[2], b[0], b[1]]
+}

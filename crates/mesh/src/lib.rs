@@ -15,7 +15,7 @@
 //! | [`quality`], [`dihedral`] | radius ratios and dihedral angles |
 //! | [`repair`], [`facets`] | surfaces corrected; polygons with holes cut into triangles |
 //! | [`source`], [`boundary`] | meshes and boundaries that are read a part at a time |
-//! | [`adjacency`], [`faces`], [`stacks`], [`relabel`], [`beside`] | neighbours, faces, prisms of layers, labels, values beside a mesh |
+//! | [`adjacency`], [`faces`], [`stacks`], [`relabel`], [`beside`], [`region`] | neighbours, faces, prisms of layers, labels, values beside a mesh, regions |
 //! | [`smooth`], [`shapes`] | smoothing; spheres, tubes and other shapes |
 //! | [`geometry`], [`bits`] | predicates, intersections, distances, search trees; bits of numbers |
 //! | [`progress`], [`units`] | progress and cancellation; numbers for people |
@@ -44,6 +44,7 @@ mod keys;
 mod of_mesh;
 pub mod progress;
 pub mod quality;
+pub mod region;
 pub mod relabel;
 pub mod repair;
 mod setters;
@@ -55,7 +56,8 @@ pub mod units;
 
 pub use bounds::{Bound, Bounds, REGULAR_DIHEDRAL};
 pub use keep::Kept;
-pub use keys::{face_key, tet_key};
+pub use keys::{face_key, same_turn, tet_key};
+pub use region::NamedRegion;
 
 pub use geometry::{Point3, Vec3};
 pub use nalgebra;
@@ -134,9 +136,9 @@ pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 
 pub struct VolumeMesh {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
-    /// Block of each tetrahedron (clusters first, then connectors).
+    /// Block of each tetrahedron (clusters first, then connectors), or its region ([`NamedRegion`]).
     pub tet_block: Vec<i32>,
-    /// Every boundary face exactly once, oriented outwards.
+    /// Every boundary face exactly once, oriented outwards; in a mesh with regions also every interface face.
     pub boundary: Vec<[u32; 3]>,
     /// Block of the tetrahedron under each boundary face.
     pub boundary_block: Vec<i32>,

@@ -11,9 +11,9 @@ use crate::cli::stop::NOTHING_KEPT;
 use anastomesh_io::tetgen::{Extent, MeshFamily};
 use anastomesh_io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
 use anastomesh_mesh::progress::Progress;
-use anastomesh_mesh::{Patch, TET_FACES, VolumeMesh};
+use anastomesh_mesh::region::{NamedRegion, label_faces};
+use anastomesh_mesh::{Patch, VolumeMesh};
 use anastomesh_tet::Tetrahedralization;
-use rustc_hash::FxHashMap;
 
 /// Marker of all faces of an unmarked input.
 const UNMARKED: i32 = 1;
@@ -43,26 +43,9 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     if volume.tet_block.is_empty() {
         volume.tet_block = vec![0; volume.mesh.tets.len()];
     } else {
-        set_boundary_blocks(&mut volume);
+        label_faces(&mut volume);
     }
     volume
-}
-
-/// Sets the region of each face: that of its last tetrahedron.
-fn set_boundary_blocks(volume: &mut VolumeMesh) {
-    let sorted = |mut face: [u32; 3]| {
-        face.sort_unstable();
-        face
-    };
-    let listed: FxHashMap<[u32; 3], usize> =
-        volume.boundary.iter().enumerate().map(|(i, &face)| (sorted(face), i)).collect();
-    for (t, &region) in volume.mesh.tets.iter().zip(&volume.tet_block) {
-        for side in TET_FACES {
-            if let Some(&i) = listed.get(&sorted(side.map(|corner| t[corner]))) {
-                volume.boundary_block[i] = region;
-            }
-        }
-    }
 }
 
 /// Writes the mesh; returns the files.
@@ -73,7 +56,8 @@ pub fn write(
     plan: &TetPlan,
     progress: &dyn Progress,
 ) -> Result<Vec<PathBuf>, Failure> {
-    let regions = volume.tet_block.iter().any(|&region| region != 0);
+    let is_labelled = volume.tet_block.iter().any(|&region| region != 0);
+    let regions = if is_labelled { NamedRegion::all_numbered(volume.tet_block.iter().copied()) } else { Vec::new() };
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
     // Only options that affect the mesh: neither threads nor paths.
     let options = serde_json::to_string(plan).map_err(|e| Failure::stage(format!("cannot write JSON: {e}")))?;
@@ -88,7 +72,7 @@ pub fn write(
             Ok(vec![path.clone()])
         }
         Target::Family(base) => {
-            let family = family(volume, input, plan, regions).progress(progress);
+            let family = family(volume, input, plan, is_labelled).progress(progress);
             family.write(base).map_err(|e| failed(&e))
         }
         Target::Stream(format) => {

@@ -2,7 +2,7 @@
 
 use crate::flow::Flow;
 use anastomesh_mesh::check::Expectation;
-use anastomesh_mesh::{Patch, VolumeMesh};
+use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
 use std::borrow::Cow;
 
 /// Additional information in a mesh file.
@@ -14,8 +14,8 @@ pub struct MeshNotes {
     pub generator: String,
     /// Options of the program run.
     pub options: String,
-    /// True if the blocks are regions, which a format with cell groups keeps separate.
-    pub regions: bool,
+    /// Regions of the mesh, ascending by id; the blocks of its tetrahedra are their ids. Empty if the blocks are no regions.
+    pub regions: Vec<NamedRegion>,
     /// Flow through the mesh, for formats that are solver cases.
     pub flow: Option<Flow>,
 }

@@ -28,7 +28,7 @@ pub fn labelled_tube(layers: u32) -> (VolumeMesh, MeshNotes) {
         expectation: Some(Expectation { loops: vec![0, 2], terminals: vec![7, 4_000_000_000] }),
         generator: "anastomesh 0.1.0".into(),
         options: "rho = 3 # größer".into(),
-        regions: false,
+        regions: Vec::new(),
         flow: None,
     };
     (volume, notes)

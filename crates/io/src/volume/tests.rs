@@ -15,7 +15,7 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::StopsAfter;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
 use anastomesh_mesh::stacks::MixedMesh;
-use anastomesh_mesh::{Patch, VolumeMesh};
+use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
 use proptest::prelude::*;
 use std::borrow::Cow;
 use std::fs;
@@ -54,7 +54,7 @@ fn pieces_make_no_difference() {
         same_bytes(&volume, &notes, &sizes);
     }
     let (mut volume, mut notes) = tube(20);
-    notes.regions = true;
+    notes.regions = [0, 1].map(NamedRegion::numbered).to_vec();
     same_bytes(&volume, &notes, &[13]);
     volume.tet_block.clear();
     volume.boundary_block.clear();

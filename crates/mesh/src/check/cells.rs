@@ -7,7 +7,7 @@ use crate::geometry::DisjointSets;
 use crate::geometry::Point3;
 use crate::geometry::place_key;
 use crate::geometry::predicates::{in_exact_range, orient3d};
-use crate::{face_key, tet_key};
+use crate::{face_key, same_turn, tet_key};
 use rayon::prelude::*;
 
 pub(super) fn centroid(points: &[Point3], ids: &[u32]) -> Point3 {
@@ -130,11 +130,6 @@ fn faces_shared_by_two(mesh: &TetMesh, adjacency: &TetAdjacency) -> LineResult {
         tally.add(|| face_offender(&mesh.points, face));
     }
     tally.done()
-}
-
-/// True if two triangles with the same vertices have the same orientation.
-pub(super) fn same_turn(a: [u32; 3], b: [u32; 3]) -> bool {
-    a == b || a == [b[1], b[2], b[0]] || a == [b[2], b[0], b[1]]
 }
 
 /// Finds interior faces whose two tetrahedra lie on the same side: both see the face with the same orientation from

@@ -1,12 +1,12 @@
 //! Conditions on the boundary labels: wall and caps.
 
-use super::cells::{face_offender, same_turn};
+use super::cells::face_offender;
 use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
-use crate::face_key;
 use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Vec3};
 use crate::quality::triangle_area_vector;
 use crate::{Cap, Patch, VolumeMesh, WALL};
+use crate::{face_key, same_turn};
 use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 use std::f64::consts::PI;

@@ -3,7 +3,7 @@
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::{Cap, Patch};
+use anastomesh_mesh::{Cap, NamedRegion, Patch};
 
 /// Gmsh element types.
 pub(super) const MSH_TRIANGLE: i32 = 2;
@@ -26,6 +26,8 @@ pub(super) struct Extra {
     loops: Option<Vec<u32>>,
     terminals: Option<Vec<u32>>,
     caps: Vec<ExtraCap>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    regions: Vec<NamedRegion>,
 }
 
 /// Cap in the custom section.
@@ -53,6 +55,7 @@ impl Extra {
             loops: notes.expectation.as_ref().map(|expected| expected.loops.clone()),
             terminals: notes.expectation.as_ref().map(|expected| expected.terminals.clone()),
             caps: patches.iter().filter_map(|p| p.cap.as_ref().map(|c| cap(p.id, c))).collect(),
+            regions: notes.regions.clone(),
         }
     }
 
@@ -60,7 +63,8 @@ impl Extra {
     pub(super) fn into_notes(self) -> (MeshNotes, Vec<(i32, Cap)>) {
         let terminals = self.terminals.unwrap_or_default();
         let expectation = self.loops.map(|loops| Expectation { loops, terminals });
-        let notes = MeshNotes { expectation, generator: self.generator, options: self.options, ..MeshNotes::default() };
+        let Self { generator, options, regions, .. } = self;
+        let notes = MeshNotes { expectation, generator, options, regions, flow: None };
         let cap = |c: ExtraCap| {
             let (center, normal) = (Point3::from(c.center), Vec3::from(c.normal));
             (c.patch, Cap { node: c.node, center, normal, radius: c.radius })

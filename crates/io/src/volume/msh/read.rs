@@ -6,6 +6,7 @@ use super::names::{Extra, MSH_PRISM, MSH_PYRAMID, MSH_QUAD, MSH_TETRA, MSH_TRIAN
 use crate::patches::{distinct, usual_name};
 use crate::volume::content::MeshFile;
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::region::{NamedRegion, label_faces};
 use anastomesh_mesh::stacks::Polyhedra;
 use anastomesh_mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
@@ -50,6 +51,8 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
 struct MshSections {
     /// Names of the physical groups of surfaces.
     names: Vec<(i32, String)>,
+    /// Names of the physical groups of volumes.
+    volume_names: Vec<(i32, String)>,
     /// First physical group of each surface.
     group_of_surface: FxHashMap<i32, i32>,
     /// First physical group of each volume.
@@ -74,8 +77,10 @@ impl MshSections {
             let dimension = words.next().and_then(|w| w.parse::<i32>().ok()).ok_or_else(|| cursor.bad())?;
             let tag = words.next().and_then(|w| w.parse::<i32>().ok()).ok_or_else(|| cursor.bad())?;
             let name = words.next().unwrap_or_default().trim().trim_matches('"');
-            if dimension == 2 {
-                self.names.push((tag, name.into()));
+            match dimension {
+                2 => self.names.push((tag, name.into())),
+                3 => self.volume_names.push((tag, name.into())),
+                _ => {}
             }
         }
         Ok(())
@@ -215,11 +220,13 @@ impl MshSections {
         volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
         let mut faces: Vec<[u32; 3]> = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
         polyhedra.split(&mut volume.mesh.tets, &mut faces);
-        // A single group names the whole mesh; several groups are regions.
-        let regions = self.tets.iter().any(|tet| Some(tet.2) != self.tets.first().map(|first| first.2));
-        volume.tet_block = self.tets.iter().map(|tet| if regions { tet.2 } else { 0 }).collect();
         let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
         file.notes = notes;
+        if file.notes.regions.is_empty() {
+            file.notes.regions = self.regions();
+        }
+        let has_regions = !file.notes.regions.is_empty();
+        volume.tet_block = self.tets.iter().map(|tet| if has_regions { tet.2 } else { 0 }).collect();
         // Triangles without a group are not a labelled boundary.
         if self.triangles.iter().any(|&(.., group)| group != 0) {
             file.labelled = true;
@@ -227,8 +234,22 @@ impl MshSections {
             volume.boundary_patch = self.triangles.iter().map(|&(.., group)| group).collect();
             volume.boundary_block = vec![0; self.triangles.len()];
             volume.patches = self.patches(&caps);
+            if has_regions {
+                label_faces(volume);
+            }
         }
         Ok(file)
+    }
+
+    /// Regions of a file without a list of them. A single group names the whole mesh; several groups are regions.
+    fn regions(&self) -> Vec<NamedRegion> {
+        let groups = distinct(self.tets.iter().map(|tet| tet.2).collect());
+        if groups.len() < 2 {
+            return Vec::new();
+        }
+        let name = |id: i32| self.volume_names.iter().find(|(tag, _)| *tag == id).map(|(_, name)| name.clone());
+        let region = |id| name(id).map_or_else(|| NamedRegion::numbered(id), |name| NamedRegion { id, name });
+        groups.into_iter().map(region).collect()
     }
 
     /// Cells to split, at the places of their tags in the sorted lists.

@@ -10,6 +10,7 @@ use crate::volume::in_pieces::InPieces;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::region::{NamedRegion, label_faces};
 use anastomesh_mesh::source::MeshSource;
 use std::io;
 
@@ -55,7 +56,7 @@ fn the_older_version_is_text() {
 #[test]
 fn regions_become_volumes() {
     let (mut volume, mut notes) = labelled_tube(5);
-    notes.regions = true;
+    notes.regions = [2, 7, 1_000_000].map(NamedRegion::numbered).to_vec();
     for (tet, block) in volume.tet_block.iter_mut().enumerate() {
         *block = [7, 2, 1_000_000][tet % 3];
     }
@@ -64,8 +65,7 @@ fn regions_become_volumes() {
         write(&mut bytes, &volume, &notes).unwrap();
         bytes
     });
-    volume.boundary_block.fill(0);
-    notes.regions = false;
+    label_faces(&mut volume);
     for bytes in both {
         assert_eq!(read(&bytes).unwrap(), MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
         let names = String::from_utf8_lossy(&bytes).into_owned();
@@ -137,7 +137,7 @@ fn values_stand_beside_nodes_and_elements() {
         (tets, faces, file.volume.patches, file.notes)
     };
     for (binary, regions) in [(true, false), (true, true), (false, false)] {
-        notes.regions = regions;
+        notes.regions = if regions { [0, 1].map(NamedRegion::numbered).to_vec() } else { Vec::new() };
         let bytes_of = |mesh: &dyn MeshSource, values: Option<&dyn Beside>| {
             let mut bytes = Vec::new();
             if binary {

@@ -8,7 +8,7 @@ use crate::volume::content::MeshNotes;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::Aabb;
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_mesh::{Patch, VolumeMesh};
+use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -24,15 +24,15 @@ pub(super) struct Volume {
 
 /// One volume in total, or one per region.
 pub(super) fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
-    if notes.regions {
+    if !notes.regions.is_empty() {
         let mut sizes: BTreeMap<i32, usize> = BTreeMap::new();
         mesh.each_tets(|piece| {
             piece.blocks.iter().for_each(|&region| *sizes.entry(region).or_default() += 1);
             Ok(())
         })?;
-        if sizes.len() > 1 {
+        if !sizes.is_empty() {
             let volume = |(id, tets)| Volume {
-                group: Some((id, format!("region_{id}"))).filter(|&(id, _)| id > 0),
+                group: Some((id, NamedRegion::name_of(&notes.regions, id))).filter(|&(id, _)| id > 0),
                 tets,
                 region: Some(id),
             };
@@ -110,7 +110,7 @@ fn write_names(out: &mut impl Write, patches: &[Patch], volumes: &[Volume]) -> i
         writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
     }
     for (tag, name) in groups() {
-        writeln!(out, "3 {tag} \"{name}\"")?;
+        writeln!(out, "3 {tag} \"{}\"", name.replace('"', "'"))?;
     }
     writeln!(out, "$EndPhysicalNames")
 }

@@ -3,6 +3,7 @@
 use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
 use super::values::write_values_2;
 use crate::volume::content::MeshNotes;
+use anastomesh_mesh::NamedRegion;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::source::MeshSource;
 use std::collections::BTreeSet;
@@ -10,8 +11,10 @@ use std::io::{self, Write};
 
 /// Physical groups of a mesh.
 struct Groups {
-    /// Groups of tetrahedra: one for all, or the regions.
+    /// Regions, which are groups of tetrahedra; empty for one group of all.
     regions: BTreeSet<i32>,
+    /// Names of the regions.
+    names: Vec<NamedRegion>,
     /// Group of all tetrahedra, above all patches.
     lumen: i32,
 }
@@ -25,26 +28,27 @@ impl Groups {
             Ok(())
         })?;
         let mut regions = BTreeSet::new();
-        if notes.regions {
+        if !notes.regions.is_empty() {
             mesh.each_tet_labels(|piece| {
                 regions.extend(piece.blocks.iter().copied());
                 Ok(())
             })?;
         }
-        Ok(Self { regions, lumen: largest.max(0).saturating_add(1) })
+        Ok(Self { regions, names: notes.regions.clone(), lumen: largest.max(0).saturating_add(1) })
     }
 
     /// Group of a tetrahedron; 0 (none) for regions with an invalid group id.
     fn of_tet(&self, block: i32) -> i32 {
-        if self.regions.len() > 1 { block.max(0) } else { self.lumen }
+        if self.regions.is_empty() { self.lumen } else { block.max(0) }
     }
 
     /// Groups of tetrahedra with their names.
     fn named(&self) -> Vec<(i32, String)> {
-        match self.regions.len() {
-            0 | 1 => vec![(self.lumen, VOLUME_NAME.into())],
-            _ => self.regions.iter().filter(|&&id| id > 0).map(|&id| (id, format!("region_{id}"))).collect(),
+        if self.regions.is_empty() {
+            return vec![(self.lumen, VOLUME_NAME.into())];
         }
+        let named = |&id: &i32| (id, NamedRegion::name_of(&self.names, id));
+        self.regions.iter().filter(|&&id| id > 0).map(named).collect()
     }
 }
 
@@ -68,7 +72,7 @@ pub(in crate::volume) fn write(
         writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
     }
     for (id, name) in volumes {
-        writeln!(out, "3 {id} \"{name}\"")?;
+        writeln!(out, "3 {id} \"{}\"", name.replace('"', "'"))?;
     }
     writeln!(out, "$EndPhysicalNames\n$Nodes\n{}", counts.points)?;
     let mut tag = 0_u64;

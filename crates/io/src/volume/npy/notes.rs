@@ -3,7 +3,7 @@
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::{Cap, Patch};
+use anastomesh_mesh::{Cap, NamedRegion, Patch};
 use serde::{Deserialize, Serialize};
 
 /// Contents of `mesh.json`.
@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Notes {
     generator: String,
     options: String,
-    /// True if blocks are regions.
-    regions: bool,
+    /// Regions, by the ids of the blocks; empty if blocks are no regions.
+    regions: Vec<NamedRegion>,
     expected: Option<Expected>,
     patches: Vec<NamedPatch>,
 }
@@ -52,7 +52,7 @@ impl Notes {
         Self {
             generator: notes.generator.clone(),
             options: notes.options.clone(),
-            regions: notes.regions,
+            regions: notes.regions.clone(),
             expected,
             patches: patches.iter().map(named).collect(),
         }

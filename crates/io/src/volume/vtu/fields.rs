@@ -67,7 +67,7 @@ impl Fields {
             expectation,
             generator: self.text(field::GENERATOR),
             options: self.text(field::OPTIONS),
-            regions: false,
+            regions: Vec::new(),
             flow: None,
         }
     }

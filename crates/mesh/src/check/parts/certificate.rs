@@ -311,7 +311,7 @@ fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     let mut owner_of = |&face: &[u32; 3]| {
         if face.iter().all(|&v| on[v as usize])
             && let Ok(i) = named.binary_search_by_key(&face_key(face), |entry| entry.0)
-            && cells::same_turn(face, named[i].2)
+            && crate::same_turn(face, named[i].2)
         {
             met[i] = true;
             return named[i].1;

@@ -3,10 +3,11 @@
 use super::glue::{Held, invalid, sum_of};
 use super::tallies::Tallies;
 use super::{FacesApart, Parts};
-use crate::check::cells::{centroid, same_turn};
+use crate::check::cells::centroid;
 use crate::check::result::{Line, Offender, OffenderKind};
 use crate::face_key;
 use crate::geometry::Point3;
+use crate::same_turn;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::io;

@@ -6,10 +6,10 @@
 
 use super::{Certificate, FacesApart, PartView, Parts, certify_with, check_parts, sums};
 use crate::adjacency::{NONE, face_vertices, tet_adjacency};
-use crate::check::cells::same_turn;
 use crate::check::result::{CheckReport, Expectation};
 use crate::face_key;
 use crate::geometry::DisjointSets;
+use crate::same_turn;
 use crate::source::{FacePiece, MeshSource};
 use crate::{Cap, TetMesh, WALL};
 use rayon::prelude::*;
