@@ -14,6 +14,9 @@ const BACK: f64 = 0.5;
 /// 0.06 r.
 const ROUND: f64 = 0.77;
 
+/// Height of the rim of an overrun's end over the solid of the tip, in radii: √(1 + (1 − ROUND)²) − 1, rounded up.
+const RIM: f64 = 0.027;
+
 /// Golden ratio and maximum number of golden section steps: they reduce an interval to 10⁻¹⁰ of its length.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const GOLDEN_STEPS: u32 = 48;
@@ -57,10 +60,20 @@ impl Tip {
 
     /// True if the vessel keeps the required distance.
     pub fn clears(&self, tube: &Tube, blending: f64) -> bool {
-        let radius = self.section.radius;
+        self.keeps(tube, blending, |other| self.margin(other, blending))
+    }
+
+    /// True if the axis of the vessel stays `blending` times its radius away from the tip, up to the rim of its overrun.
+    pub fn rim_clears(&self, tube: &Tube, blending: f64) -> bool {
+        self.keeps(tube, blending, |other| blending * other + RIM * self.section.radius)
+    }
+
+    /// True if every point of the vessel's axis keeps the distance `margin(radius)` from the solid. The margin is linear
+    /// with slope `blending`.
+    fn keeps(&self, tube: &Tube, blending: f64, margin: impl Fn(f64) -> f64) -> bool {
         let ends = self.reach.map(|h| self.axis_point(h));
         let near = segment_segment([&ends[0], &ends[1]], [&tube.a, &tube.b]);
-        if near.distance >= radius + self.margin(tube.max_radius(), blending) {
+        if near.distance >= self.section.radius + margin(tube.max_radius()) {
             return true;
         }
         // The clearance is convex along the axis: distance to a convex solid minus a linear radius. Golden section
@@ -68,7 +81,7 @@ impl Tip {
         // be the closest.
         let spare = |t: f64| {
             let p = tube.point(t);
-            (p - self.closest(&p)).norm() - self.margin(tube.radius(t), blending)
+            (p - self.closest(&p)).norm() - margin(tube.radius(t))
         };
         let steep = tube.length() + blending * (tube.rb - tube.ra).abs();
         let (mut lo, mut hi) = (0.0, 1.0);

@@ -23,6 +23,9 @@ pub(super) enum ObstacleKind {
 /// Maximum number of obstacles that are searched without a tree.
 const FEW: usize = 48;
 
+/// Maximum length of the straight run before an end plane, in radii ([`Course::run_start`]).
+const LONGEST_RUN: f64 = 1.25;
+
 /// Courses of some branches and the obstacles that they form.
 pub(super) struct Near {
     /// Courses in ascending order of branch.
@@ -46,7 +49,10 @@ impl Near {
         for (branch, course) in &courses {
             let mut add = |kind: ObstacleKind, tube: &Tube| {
                 obstacles.push(Obstacle { branch: *branch, kind });
-                boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * tube.max_radius()));
+                let r = tube.max_radius();
+                // A straight end deviates from its edges by at most its own length or that of its overrun.
+                let aside = params.overruns().length(r, r).max(LONGEST_RUN * r);
+                boxes.push(Aabb::of_points([&tube.a, &tube.b]).grown(blending * r + aside));
             };
             for (i, [ra, rb]) in course.radii.iter().enumerate() {
                 let tube = Tube { a: course.points[i], b: course.points[i + 1], ra: *ra, rb: *rb };

@@ -9,7 +9,7 @@ use super::near::{Near, Obstacle, ObstacleKind, terminal_overrun};
 use super::params::{PartitionError, PartitionParams};
 use super::parts::UncutReason;
 use super::window::Slot;
-use anastomesh_mesh::geometry::{DisjointSets, Section};
+use anastomesh_mesh::geometry::{DisjointSets, Section, Tube};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::{BranchId, NodeId};
@@ -277,7 +277,56 @@ impl<'a> Settler<'a> {
     fn clear_at(&self, near: &Near, run: usize, way: Way, s: f64) -> Result<(), BranchId> {
         let BranchSpan { branch, root, .. } = self.runs[run];
         let section = near.course(branch).section(s, way);
-        self.tip_clear(near, run, way, s, &section, self.overrun(section.radius, root))
+        let overrun = self.overrun(section.radius, root);
+        self.tip_clear(near, run, way, s, &section, overrun)?;
+        self.ends_clear(near, run, way, &Tip::new(section, overrun))
+    }
+
+    /// Checks that a tip is clear of the straight ends of its cluster's other vessels. These leave the course of the
+    /// vessel: a straight run leads to the end plane, and the overrun continues it.
+    fn ends_clear(&self, near: &Near, own: usize, way: Way, tip: &Tip) -> Result<(), BranchId> {
+        let mut first: Option<u32> = None;
+        near.query(&tip.aabb(self.blending), |obstacle| {
+            let ObstacleKind::Edge(edge) = obstacle.kind else { return };
+            let branch = obstacle.branch;
+            if first.is_some_and(|b| b <= branch) {
+                return;
+            }
+            let course = near.course(branch);
+            for run in self.first_run[branch as usize] as usize..self.first_run[branch as usize + 1] as usize {
+                let ends = Way::BOTH.into_iter().filter(|&end| !(run == own && end == way));
+                let here = self.runs[run].root == self.runs[own].root;
+                if here && ends.into_iter().any(|end| self.end_in_the_way(course, run, end, edge, tip, run == own)) {
+                    first = Some(branch);
+                }
+            }
+        });
+        first.map_or(Ok(()), |b| Err(BranchId(b)))
+    }
+
+    /// True if the straight end of a run obstructs a tip. Only ends that overlap the edge `edge` of the course are
+    /// checked. The tip's own vessel obstructs it only with the overrun at its other end.
+    fn end_in_the_way(&self, course: &Course, run: usize, end: Way, edge: u32, tip: &Tip, own: bool) -> bool {
+        let run = &self.runs[run];
+        let arc = self.range(run, course);
+        let flat = [0, 1].map(|i| run.slots[i].is_some() || self.terminals[run.branch as usize][i]);
+        let (i, s) = (end.end_index(), arc[end.end_index()]);
+        if !flat[i] {
+            return false;
+        }
+        let start = course.run_start(s, end);
+        if course.clipped(edge as usize, start.min(s), start.max(s)).is_none() {
+            return false;
+        }
+        let section = course.section(s, end);
+        let r = section.radius;
+        let beyond = section.origin + section.axis * self.overrun(r, run.root);
+        let overrun = Tube { a: section.origin, b: beyond, ra: r, rb: r };
+        let straight = || {
+            let tubes = course.tubes(arc[0], arc[1], flat);
+            tubes[i * (tubes.len() - 1)]
+        };
+        !tip.rim_clears(&overrun, self.blending) || (!own && !tip.rim_clears(&straight(), self.blending))
     }
 
     /// Checks an end with a given overrun.
