@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::blocks::BlockArgs;
 use super::certificate::{CertificateArgs, Certified};
 use super::common::{Common, ended, print, thread_pool};
+use super::domain::DomainArgs;
 use super::exit::{Exit, Failure};
 use super::fidelity::{FidelityArgs, conclude};
 use super::flow::FlowArgs;
@@ -24,6 +25,7 @@ use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
+use crate::domain::{Domain, DomainError, DomainPlan, ShellsReport};
 use crate::fidelity::{Along, Changes, Fidelity};
 use crate::pipeline::{Caps, Datum, Estimate, FlowPlan, JointStyle, MeshPlan, RunReport, Shard, VesselData};
 use crate::report::caps;
@@ -35,12 +37,12 @@ use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with};
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::beside::Beside;
-use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
+use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
-use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::source::{MeshSource, gather};
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{NodeId, Skeleton};
@@ -89,6 +91,8 @@ pub struct Args {
     #[arg(long, help_heading = "Run")]
     dry_run: bool,
     #[command(flatten)]
+    domain: DomainArgs,
+    #[command(flatten)]
     fidelity: FidelityArgs,
     #[command(flatten)]
     grid: GridArgs,
@@ -129,6 +133,7 @@ struct Found<'a> {
     mesh: &'a dyn MeshSource,
     network: &'a Skeleton,
     check: &'a CheckReport,
+    shells: Option<&'a ShellsReport>,
     fidelity: Option<&'a Fidelity>,
     changes: &'a Changes,
     caps: Option<&'a Caps>,
@@ -148,6 +153,8 @@ struct Output<'a> {
     refine: Option<&'a RefineReport>,
     run: &'a RunReport,
     check: Option<&'a CheckReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shells: Option<&'a ShellsReport>,
     fidelity: Option<&'a Fidelity>,
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<&'a Changes>,
@@ -167,6 +174,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--work-dir cannot store smoothed joints: give --joint disc or --frozen-joints"));
     }
     let flow = args.flow.plan()?;
+    let domain = args.domain.plan(&args.network)?;
     args.fidelity.limits()?;
     let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
@@ -185,6 +193,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = thread_pool(args.common.threads)?;
     let prepared = pool.install(|| args.prepared(plan, flow))?;
+    let checked = pool.install(|| domain.check(&prepared.networks.prepared));
+    checked.map_err(|e| args.no_regions(&e, &prepared.networks.names))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
@@ -215,9 +225,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         _ if prepared.plan.smooths_joints() => {
             let plan = prepared.plan.clone();
             let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan, &bars))?;
-            args.finish(made, &plan, &bars)
+            args.finish(made, &plan, &domain, &bars)
         }
-        (work, _) => args.run_in_store(work, prepared, &bars),
+        (work, _) => args.run_in_store(work, prepared, &domain, &bars),
     })
 }
 
@@ -266,7 +276,13 @@ impl Args {
     }
 
     /// Meshes through a block store.
-    fn run_in_store(&self, work: Option<WorkDir>, run: PreparedRun, bars: &Bars) -> Result<Exit, Failure> {
+    fn run_in_store(
+        &self,
+        work: Option<WorkDir>,
+        run: PreparedRun,
+        domain: &DomainPlan,
+        bars: &Bars,
+    ) -> Result<Exit, Failure> {
         let plan = run.plan.clone();
         let (place, store) = match work {
             Some(WorkDir { place, store }) => (place, store),
@@ -276,11 +292,17 @@ impl Args {
         let format = self.format.of(&self.output)?;
         let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
         let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
-        self.finish(made, &plan, bars)
+        self.finish(made, &plan, domain, bars)
     }
 
     /// Writes the mesh and the reports.
-    fn finish<M: MeshSource>(&self, mut made: NetworkMesh<M>, plan: &MeshPlan, bars: &Bars) -> Result<Exit, Failure> {
+    fn finish<M: MeshSource>(
+        &self,
+        mut made: NetworkMesh<M>,
+        plan: &MeshPlan,
+        domain: &DomainPlan,
+        bars: &Bars,
+    ) -> Result<Exit, Failure> {
         bars.keep();
         self.tell_refined(&made.networks)?;
         let asked = Some(&self.data).filter(|data| !data.is_empty());
@@ -303,10 +325,17 @@ impl Args {
             Some(grouped) => grouped,
             None => &made.mesh,
         };
-        let notes = made.notes(
+        let mut notes = made.notes(
             concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into(),
             self.typed(made.networks.refine.is_some()),
         );
+        let expectation = notes.expectation.as_ref().unwrap_or(&made.expectation);
+        let domain = self.around((&made, expectation), written, domain, bars)?;
+        let (written, check): (&dyn MeshSource, _) = match &domain {
+            Some(domain) => (&domain.mesh, &domain.check),
+            None => (written, &made.check),
+        };
+        notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.regions.clone());
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         if let Some(caps) = &made.caps {
@@ -317,16 +346,17 @@ impl Args {
             mesh: &self.output,
             format: self.format.of(&self.output)?,
             options: &self.typed(made.networks.refine.is_some()),
-            check: &made.check,
+            check,
         })?;
         let name = |node| made.networks.names.of(NodeId(node));
-        let verdict = Verdict::of_mesh(&made.check, &made.report, &self.fidelity.refused(&made.defects), &name);
+        let verdict = Verdict::of_mesh(check, &made.report, &self.fidelity.refused(&made.defects), &name);
         let mut run = made.report.clone();
         run.stages = bars.stages();
         let found = Found {
             mesh: written,
             network: &made.network,
-            check: &made.check,
+            check,
+            shells: domain.as_ref().and_then(|domain| domain.shells.as_ref()),
             fidelity: made.fidelity.as_ref(),
             changes: &made.changes,
             caps: made.caps.as_ref(),
@@ -345,6 +375,40 @@ impl Args {
         self.fidelity.tell(&self.common, &made.defects, &run, &name);
         let exit = conclude(&self.common, &verdict);
         Ok(if run.failed.is_empty() { exit } else { Exit::StageFailed })
+    }
+
+    /// Regions around a lumen. `None` if none are asked for, or the lumen is not valid.
+    fn around<M>(
+        &self,
+        (made, expectation): (&NetworkMesh<M>, &Expectation),
+        lumen: &dyn MeshSource,
+        plan: &DomainPlan,
+        bars: &Bars,
+    ) -> Result<Option<Domain>, Failure> {
+        if plan.is_plain() {
+            return Ok(None);
+        }
+        if !made.is_valid() || !made.report.failed.is_empty() {
+            bars.note("the lumen is not valid: it is written without regions around it");
+            return Ok(None);
+        }
+        let names = &made.networks.names;
+        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", self.network.network.display()));
+        let lumen = gather(lumen).map_err(|e| if bars.is_cancelled() { self.stopped() } else { failed(&e) })?;
+        let made = Domain::around(lumen, &made.network, plan, expectation, bars);
+        made.map(Some).map_err(|e| if e.is_cancelled() { self.stopped() } else { self.no_regions(&e, names) })
+    }
+
+    /// Failure to make the regions.
+    fn no_regions(&self, error: &DomainError, names: &NodeNames) -> Failure {
+        let text = match error {
+            DomainError::NodesOutside { node, .. } => {
+                let named = format!("node {}", names.of(NodeId(*node)));
+                error.to_string().replace(&format!("node {node} "), &format!("{named} "))
+            }
+            _ => error.to_string(),
+        };
+        Failure::input(format!("{}: {text}", self.network.network.display()))
     }
 
     /// Failure of a run, after its reports.
@@ -453,7 +517,8 @@ impl Args {
     /// Options that the mesh depends on, as command-line text.
     fn typed(&self, is_refined: bool) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
-        format!("mesh {}{core}{}", self.blocks.typed(is_refined), self.layers.typed())
+        let [layers, regions] = [self.layers.typed(), self.domain.typed()];
+        format!("mesh {}{core}{layers}{regions}", self.blocks.typed(is_refined))
     }
 
     /// Writes the refined network, if requested: the network as given if that is meshed.
@@ -483,6 +548,7 @@ impl Args {
         found: Option<&Found>,
     ) -> Result<(), Failure> {
         let check = found.map(|found| found.check);
+        let shells = found.and_then(|found| found.shells);
         let fidelity = found.and_then(|found| found.fidelity);
         let changes = found.map(|found| found.changes);
         let (attempts, kept) = found.map_or((&[][..], 0), |found| found.attempts);
@@ -492,8 +558,20 @@ impl Args {
             let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
             let defects = found.map_or(&[][..], |found| found.defects);
             let verdict = found.map(|found| found.verdict.text.as_str());
-            let output =
-                Output { program, plan, prepare, refine, run, check, fidelity, changes, attempts, defects, verdict };
+            let output = Output {
+                program,
+                plan,
+                prepare,
+                refine,
+                run,
+                check,
+                shells,
+                fidelity,
+                changes,
+                attempts,
+                defects,
+                verdict,
+            };
             return print(true, &output, String::new);
         }
         if self.common.quiet {
@@ -509,8 +587,18 @@ impl Args {
         files.extend(self.certificate.path().filter(|_| found.is_some()));
         files.extend(self.report.page().map(PathBuf::as_path));
         let (attempts, listed) = ((attempts, kept), self.common.verbose);
-        let summary =
-            Summary { run, refine, attempts, name: &name, check, fidelity, changes, ended: ended(&files), listed };
+        let summary = Summary {
+            run,
+            refine,
+            attempts,
+            name: &name,
+            check,
+            shells,
+            fidelity,
+            changes,
+            ended: ended(&files),
+            listed,
+        };
         log::result(&summary.to_string());
         Ok(())
     }

@@ -10,6 +10,7 @@ mod common;
 mod completions;
 mod config;
 mod convert;
+mod domain;
 mod dual;
 mod exit;
 mod fidelity;

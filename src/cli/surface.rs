@@ -172,6 +172,7 @@ impl Args {
             attempts: made.map_or((&[], 0), |made| (&made.attempts, made.kept)),
             name: &name,
             check,
+            shells: None,
             fidelity: None,
             changes: made.map(|made| &made.changes),
             ended: ended(files),

@@ -2,10 +2,11 @@
 //!
 //! Points are those of the lumen, then those of the shells, then those of the organ's surface and inside the tissue.
 
-use super::plan::{DomainPlan, LUMEN, TISSUE};
+use super::plan::DomainPlan;
 use super::surface::LumenSurface;
+use super::without::without;
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
+use anastomesh_mesh::{NamedRegion, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 use anastomesh_tet::Shells;
 use std::collections::BTreeMap;
 
@@ -93,9 +94,9 @@ pub fn assemble(
     layout: &Layout,
     tissue: Option<&TetMesh>,
     plan: &DomainPlan,
-) -> (VolumeMesh, Vec<(i32, String)>) {
-    let names: Vec<String> = plan.names().into_iter().map(str::to_owned).collect();
-    let regions: Vec<(i32, String)> = (LUMEN_ID..).zip(names).collect();
+) -> (VolumeMesh, Vec<NamedRegion>) {
+    let regions: Vec<NamedRegion> =
+        (LUMEN_ID..).zip(plan.names()).map(|(id, name)| NamedRegion::new(id, name)).collect();
     let Layout { lumen: surface, shells, .. } = layout;
     let (of_lumen, on_surface) = (lumen.mesh.points.len() as u32, surface.points.len() as u32);
     let in_mesh = |v: u32| match v.checked_sub(on_surface) {
@@ -121,8 +122,8 @@ pub fn assemble(
     }
 
     let mut faces = Faces { list: lumen.patches, ..Faces::default() };
-    let name_of = |region: i32| regions[(region - LUMEN_ID) as usize].1.as_str();
-    let beyond = |region: i32| regions.get((region + 1 - LUMEN_ID) as usize).map(|(_, name)| name.as_str());
+    let name_of = |region: i32| regions[(region - LUMEN_ID) as usize].name.as_str();
+    let beyond = |region: i32| regions.get((region + 1 - LUMEN_ID) as usize).map(|next| next.name.as_str());
     let side = |region: i32| match (beyond(region), region) {
         (Some(next), _) => format!("interface_{}_{next}", name_of(region)),
         (None, LUMEN_ID) => "wall".to_owned(),
@@ -138,11 +139,10 @@ pub fn assemble(
     for (region, triangles) in (LUMEN_ID + 1..).zip(&shells.sides) {
         faces.add(&side(region), region, triangles.iter().map(|t| t.map(in_mesh)));
     }
-    let cap_names: BTreeMap<u32, String> =
-        faces.list.iter().map(|patch| (patch.id as u32, patch.name.clone())).collect();
+    let cap_names: BTreeMap<i32, String> = faces.list.iter().map(|patch| (patch.id, patch.name.clone())).collect();
     for ring in &shells.rings {
         let region = LUMEN_ID + 1 + ring.shell as i32;
-        let cap = cap_names.get(&ring.cap).map_or("cap", String::as_str);
+        let cap = cap_names.get(&surface.patches[ring.cap as usize]).map_or("cap", String::as_str);
         let name =
             if shells.sides.len() == 1 { format!("ring_{cap}") } else { format!("ring_{}_{cap}", name_of(region)) };
         faces.add(&name, region, ring.triangles.iter().map(|t| t.map(in_mesh)));
@@ -153,8 +153,8 @@ pub fn assemble(
     }
     let Faces { faces, patches: boundary_patch, regions: boundary_block, list, .. } = faces;
     let volume = VolumeMesh { mesh, tet_block, boundary: faces, boundary_block, boundary_patch, patches: list };
-    let out: Vec<i32> = regions.iter().filter(|(_, name)| plan.without.contains(name)).map(|(id, _)| *id).collect();
-    let kept = regions.into_iter().filter(|(id, _)| !out.contains(id)).collect();
-    debug_assert!(LUMEN != TISSUE);
-    (if out.is_empty() { volume } else { super::without::without(volume, &out) }, kept)
+    let (out, kept): (Vec<NamedRegion>, Vec<NamedRegion>) =
+        regions.into_iter().partition(|region| plan.without.contains(&region.name));
+    let out: Vec<i32> = out.into_iter().map(|region| region.id).collect();
+    (if out.is_empty() { volume } else { without(volume, &out) }, kept)
 }

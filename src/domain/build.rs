@@ -2,27 +2,31 @@
 
 use super::assemble::{Layout, assemble};
 use super::error::DomainError;
-use super::organ::organ;
-use super::plan::{DomainPlan, ShellPlan, TissuePlan};
+use super::organ::{check_organ, organ};
+use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan, TissueShape};
 use super::surface::LumenSurface;
 use crate::fidelity::Tubes;
-use anastomesh_mesh::progress::Progress;
-use anastomesh_mesh::{TriMesh, VolumeMesh};
+use anastomesh_mesh::check::{CheckReport, Expectation, check_tets};
+use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::Skeleton;
+use anastomesh_tet::parts::{Watch, fill_watched};
 use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, TetMesh, Tetrahedralizer};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// Mesh with several regions.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Domain {
     /// The mesh. Its blocks are the regions, and its boundary contains the interfaces.
     pub mesh: VolumeMesh,
-    /// Names of the regions with their ids, ascending.
-    pub regions: Vec<(i32, String)>,
-    /// Thickness of the shells.
-    pub shells: ShellsReport,
+    /// Regions, by ascending id.
+    pub regions: Vec<NamedRegion>,
+    /// Thickness of the shells; `None` without any.
+    pub shells: Option<ShellsReport>,
+    /// Report of the validity check.
+    pub check: CheckReport,
 }
 
 /// Thickness of all shells together, relative to what was asked for.
@@ -39,7 +43,8 @@ pub struct ShellsReport {
 }
 
 impl Domain {
-    /// Adds shells and tissue to the mesh of a lumen. `network` is the network that was meshed.
+    /// Adds shells and tissue to the mesh of a lumen, and checks the whole. `network` is the network that was meshed, and
+    /// `expectation` that of the lumen.
     ///
     /// # Errors
     /// See [`DomainError`].
@@ -47,36 +52,62 @@ impl Domain {
         lumen: VolumeMesh,
         network: &Skeleton,
         plan: &DomainPlan,
+        expectation: &Expectation,
         progress: &dyn Progress,
     ) -> Result<Self, DomainError> {
         plan.validate()?;
         let surface = LumenSurface::of(&lumen);
-        let radii = radii(&surface.surface, network);
-        let outer = |radius: &f64| radius + plan.shells.iter().map(|shell| shell.thickness.at(*radius)).sum::<f64>();
-        let largest = radii.iter().map(outer).fold(0.0, f64::max);
+        let sites = sites(&surface.surface, network);
+        let outer = |site: &Site| site.radius + plan.shells.iter().map(|shell| shell.thickness.at(site)).sum::<f64>();
+        let largest = sites.iter().map(outer).fold(0.0, f64::max);
         let around = plan.tissue.as_ref().map(|tissue| organ(tissue, &surface.surface, largest)).transpose()?;
-        let shells = shells(&surface, &radii, &plan.shells, around.as_ref(), progress)?;
-        let report = report(&shells, &surface);
+        let shells = shells(&surface, &sites, &plan.shells, around.as_ref(), progress)?;
+        let report = (!plan.shells.is_empty()).then(|| report(&shells, &surface));
         let layout = Layout::new(&surface, &shells, around.as_ref());
         let tissue = match &plan.tissue {
             Some(plan) => Some(fill(plan, layout.outside(), progress)?),
             None => None,
         };
         let (mesh, regions) = assemble(lumen, &layout, tissue.as_ref(), plan);
-        Ok(Self { mesh, regions, shells: report })
+        progress.at(Stage::Check, 0, 0);
+        let check = {
+            let _ = expectation;
+            check_tets(&mesh.mesh, None)
+        };
+        Ok(Self { mesh, regions, shells: report, check })
     }
 }
 
-/// Radius of the nearest vessel at each point of a wall.
-fn radii(surface: &TriMesh, network: &Skeleton) -> Vec<f64> {
+impl DomainPlan {
+    /// Checks names, ranges, and that the tissue's surface contains a network.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn check(&self, network: &Skeleton) -> Result<(), DomainError> {
+        self.validate()?;
+        match &self.tissue {
+            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Place on the nearest vessel of each point of a wall.
+fn sites(surface: &TriMesh, network: &Skeleton) -> Vec<Site> {
     let tubes = Tubes::of(network);
-    let radius = |p| tubes.nearest_wall(p).map_or(tubes.typical, |near| near.radius);
-    surface.points.par_iter().map(radius).collect()
+    let site = |p| {
+        let near = tubes.nearest_wall(p)?;
+        let ends = network.edge(near.edge).nodes.map(|node| network.node(node).original);
+        Some(Site { radius: near.radius, ends, t: near.t })
+    };
+    // There is no wall without a vessel.
+    let none = Site { radius: tubes.typical, ends: [0; 2], t: 0.0 };
+    surface.points.par_iter().map(|p| site(p).unwrap_or(none)).collect()
 }
 
 fn shells(
     lumen: &LumenSurface,
-    radii: &[f64],
+    sites: &[Site],
     plans: &[ShellPlan],
     around: Option<&TriMesh>,
     progress: &dyn Progress,
@@ -85,7 +116,7 @@ fn shells(
         return Ok(Shells::default());
     }
     let shell = |plan: &ShellPlan| {
-        let thickness = radii.iter().map(|&radius| plan.thickness.at(radius)).collect();
+        let thickness = sites.iter().map(|site| plan.thickness.at(site)).collect();
         Shell::new(thickness).layers(plan.layers).growth(plan.growth)
     };
     let wanted: Vec<Shell> = plans.iter().map(shell).collect();
@@ -118,6 +149,5 @@ fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result
     if let Some(size) = plan.size {
         filler = filler.sizing(Sizing::Constant(size));
     }
-    let _ = progress;
-    Ok(filler.run(surface).map_err(DomainError::Tissue)?.mesh)
+    Ok(fill_watched(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)?.mesh)
 }

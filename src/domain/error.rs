@@ -3,7 +3,6 @@
 use super::plan::DomainPlanError;
 use anastomesh_mesh::units::{counted, place};
 use anastomesh_tet::TetError;
-use std::io;
 
 /// Reason why there are no regions around a lumen.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +24,16 @@ pub enum DomainError {
     /// The organ's surface is not closed.
     #[error("the surface around the tissue cannot be filled: {0}")]
     Organ(TetError),
+    /// Nodes of the network lie outside the organ's surface.
+    #[error("{} outside the surface around the tissue, first node {node} at {}: give a surface around all vessels", lie(*count), place(*at))]
+    NodesOutside {
+        /// Number of nodes.
+        count: usize,
+        /// The first, as the file numbers its nodes from 0.
+        node: u32,
+        /// Its place.
+        at: [f64; 3],
+    },
     /// Vessels intersect the organ's surface, or lie outside.
     #[error(
         "{} of the vessels' wall {} the surface around the tissue, first at {}: give a surface around all vessels",
@@ -41,9 +50,10 @@ pub enum DomainError {
     /// The tissue cannot be filled.
     #[error("the tissue could not be filled: {0}")]
     Tissue(TetError),
-    /// The lumen cannot be read.
-    #[error(transparent)]
-    Mesh(#[from] io::Error),
+}
+
+fn lie(count: usize) -> String {
+    format!("{} lie{}", counted(count, "node"), if count == 1 { "s" } else { "" })
 }
 
 impl DomainError {

@@ -4,6 +4,7 @@ use super::error::DomainError;
 use super::plan::{TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, crossing, self_intersections};
+use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::Tetrahedralizer;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -18,11 +19,25 @@ pub fn organ(plan: &TissuePlan, vessels: &TriMesh, outer: f64) -> Result<TriMesh
     match &plan.shape {
         TissueShape::Box { margin } => Ok(box_around(vessels, *margin, outer, plan.size)),
         TissueShape::Organ(surface) => {
-            Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
             let surface = outward(surface.clone());
             holds(&surface, vessels)?;
             Ok(surface)
         }
+    }
+}
+
+/// Checks before meshing that an organ's surface is closed and contains the nodes of a network.
+pub fn check_organ(organ: &TriMesh, network: &Skeleton) -> Result<(), DomainError> {
+    Tetrahedralizer::new().check(organ).map_err(DomainError::Organ)?;
+    let nodes = network.nodes.iter().map(|node| node.position).collect();
+    let vessels = TriMesh { points: nodes, triangles: (0..network.nodes.len() as u32).map(|v| [v; 3]).collect() };
+    let outside = outside(organ, &vessels);
+    match outside.first() {
+        Some(&[v, ..]) => {
+            let at = vessels.points[v as usize].coords.into();
+            Err(DomainError::NodesOutside { count: outside.len(), node: network.nodes[v as usize].original, at })
+        }
+        None => Ok(()),
     }
 }
 

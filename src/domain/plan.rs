@@ -1,34 +1,68 @@
 //! Options of the regions around a lumen.
 
-use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::{NamedRegion, TriMesh};
 use anastomesh_tet::{Layers, LayersError};
-use serde::Serialize;
 
-/// Thickness of a shell as a function of the vessel's radius r: `length + radii · r`.
+/// Thickness of a shell.
 ///
 /// ```
 /// use anastomesh::meshing::Thickness;
 ///
-/// let arteriole = Thickness { length: 2.0, radii: 0.1 };
-/// assert_eq!(arteriole.at(30.0), 5.0);
+/// let arteriole = Thickness::Law { length: 2.0, radii: 0.1 };
+/// assert_ne!(arteriole, Thickness::PerNode(vec![2.0; 31]));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Thickness {
-    /// Constant part, in the unit of the network.
-    pub length: f64,
-    /// Share of the radius.
-    pub radii: f64,
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Thickness {
+    /// `length + radii · r`, where r is the radius of the vessel.
+    Law {
+        /// Constant part, in the unit of the network.
+        length: f64,
+        /// Share of the radius.
+        radii: f64,
+    },
+    /// Thickness at each node of the network as it was read, interpolated along vessels.
+    PerNode(Vec<f64>),
+}
+
+/// Place on a vessel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Site {
+    /// Radius there.
+    pub radius: f64,
+    /// Ends of its edge, as nodes of the network that was read.
+    pub ends: [u32; 2],
+    /// Fraction of the way from the first end to the second.
+    pub t: f64,
 }
 
 impl Thickness {
-    /// Thickness at a vessel of this radius.
-    pub fn at(&self, radius: f64) -> f64 {
-        self.length + self.radii * radius
+    /// Thickness at a place.
+    pub(super) fn at(&self, site: &Site) -> f64 {
+        match self {
+            Self::Law { length, radii } => length + radii * site.radius,
+            Self::PerNode(values) => {
+                let [a, b] = site.ends.map(|node| values.get(node as usize).copied().unwrap_or_default());
+                a + site.t * (b - a)
+            }
+        }
+    }
+
+    /// Value that is not positive, if there is one.
+    fn invalid(&self) -> Option<f64> {
+        let negative = |x: &f64| !(*x >= 0.0 && x.is_finite());
+        match self {
+            Self::Law { length, radii } => {
+                let either = [*length, *radii].into_iter().find(negative);
+                either.or_else(|| Some(0.0).filter(|_| length + radii == 0.0))
+            }
+            Self::PerNode(values) => values.iter().copied().find(|x| negative(x) || *x == 0.0),
+        }
     }
 }
 
 /// Shell around the lumen or around another shell, for instance the vessel wall.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ShellPlan {
     /// Name of the region.
@@ -109,17 +143,13 @@ anastomesh_mesh::setters!(DomainPlan {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DomainPlanError {
-    /// A thickness is zero, negative or not finite for positive radii.
-    #[error(
-        "invalid thickness of {name}: {length} + {radii} r: give a length, a share of the radius, or a sum of both, above 0"
-    )]
+    /// A thickness is zero, negative or not finite.
+    #[error("invalid thickness of {name} {value}: give a length, a share of the radius, or a sum of both, above 0")]
     Thickness {
         /// Name of the shell.
         name: String,
-        /// Constant part.
-        length: f64,
-        /// Share of the radius.
-        radii: f64,
+        /// Value.
+        value: f64,
     },
     /// Layers of a shell are out of range.
     #[error("layers of {name}: {source}")]
@@ -158,8 +188,6 @@ pub enum DomainPlanError {
     },
 }
 
-/// Name of the region inside the vessels.
-pub const LUMEN: &str = "lumen";
 /// Name of the region around the vessels.
 pub const TISSUE: &str = "tissue";
 
@@ -172,7 +200,7 @@ impl DomainPlan {
     /// Names of all regions, from the inside outwards. The id of a region is its place here, from 1.
     pub fn names(&self) -> Vec<&str> {
         let shells = self.shells.iter().map(|shell| shell.name.as_str());
-        std::iter::once(LUMEN).chain(shells).chain(self.tissue.iter().map(|_| TISSUE)).collect()
+        std::iter::once(NamedRegion::LUMEN).chain(shells).chain(self.tissue.iter().map(|_| TISSUE)).collect()
     }
 
     /// Checks names and ranges.
@@ -203,10 +231,8 @@ impl DomainPlan {
 
 impl ShellPlan {
     fn validate(&self) -> Result<(), DomainPlanError> {
-        let Thickness { length, radii } = self.thickness;
-        let is_valid = length >= 0.0 && radii >= 0.0 && length + radii > 0.0 && length.is_finite() && radii.is_finite();
-        if !is_valid {
-            return Err(DomainPlanError::Thickness { name: self.name.clone(), length, radii });
+        if let Some(value) = self.thickness.invalid() {
+            return Err(DomainPlanError::Thickness { name: self.name.clone(), value });
         }
         let layers = Layers::default().count(self.layers).growth(self.growth);
         layers.check().map_err(|source| DomainPlanError::Layers { name: self.name.clone(), source })

@@ -1,7 +1,7 @@
 use super::*;
 use crate::pipeline::{MeshPlan, mesh_network};
-use anastomesh_mesh::check::check_tets;
-use anastomesh_mesh::{TetMesh, VolumeMesh};
+use anastomesh_mesh::check::{Expectation, check_tets};
+use anastomesh_mesh::{NamedRegion, TetMesh, VolumeMesh};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_skeleton::fixtures::network;
 
@@ -14,7 +14,12 @@ fn fork() -> (Skeleton, VolumeMesh) {
 }
 
 fn wall(share: f64) -> ShellPlan {
-    ShellPlan::new("wall", Thickness { length: 0.0, radii: share })
+    ShellPlan::new("wall", Thickness::Law { length: 0.0, radii: share })
+}
+
+/// Expectation of the fork.
+fn expected() -> Expectation {
+    Expectation { loops: vec![0], terminals: vec![0, 2, 3] }
 }
 
 /// Mesh of one region.
@@ -37,15 +42,18 @@ fn region(volume: &VolumeMesh, id: i32) -> TetMesh {
 fn wall_and_tissue_conform_to_the_lumen() {
     let (network, lumen) = fork();
     let tissue = TissuePlan::new(TissueShape::Box { margin: Some(2.0) });
-    let shells = vec![wall(0.2), ShellPlan::new("annulus", Thickness { length: 0.3, radii: 0.0 }).layers(1)];
+    let shells = vec![wall(0.2), ShellPlan::new("annulus", Thickness::Law { length: 0.3, radii: 0.0 }).layers(1)];
     let plan = DomainPlan::default().shells(shells).tissue(tissue);
-    let domain = Domain::around(lumen.clone(), &network, &plan, &()).expect("made");
-    assert_eq!(domain.regions.iter().map(|r| r.1.as_str()).collect::<Vec<_>>(), ["lumen", "wall", "annulus", "tissue"]);
+    let domain = Domain::around(lumen.clone(), &network, &plan, &expected(), &()).expect("made");
+    assert_eq!(
+        domain.regions.iter().map(|r| r.name.as_str()).collect::<Vec<_>>(),
+        ["lumen", "wall", "annulus", "tissue"]
+    );
     let volume = &domain.mesh;
     assert_eq!(volume.mesh.tets[..lumen.mesh.tets.len()], lumen.mesh.tets);
     let faults: Vec<_> = check_tets(&volume.mesh, None).failed().map(|line| (line.line, line.count)).collect();
     assert!(faults.is_empty(), "{faults:?}");
-    for (id, name) in &domain.regions {
+    for NamedRegion { id, name } in &domain.regions {
         let faults: Vec<_> = check_tets(&region(volume, *id), None).failed().map(|line| line.line).collect();
         assert!(faults.is_empty(), "{name}: {faults:?}");
     }
@@ -55,15 +63,17 @@ fn wall_and_tissue_conform_to_the_lumen() {
     {
         assert!(names.contains(&name), "{name} {names:?}");
     }
-    assert!(domain.shells.complete * 10 > domain.shells.points * 9, "{:?}", domain.shells);
+    assert!(domain.check.is_valid(), "{:?}", domain.check.failed().collect::<Vec<_>>());
+    let shells = domain.shells.expect("shells");
+    assert!(shells.complete * 10 > shells.points * 9, "{shells:?}");
 }
 
 #[test]
 fn regions_can_be_left_out() {
     let (network, lumen) = fork();
     let plan = DomainPlan::default().shells(vec![wall(0.3)]).without(vec!["lumen".into()]);
-    let domain = Domain::around(lumen, &network, &plan, &()).expect("made");
-    assert_eq!(domain.regions, [(2, "wall".to_owned())]);
+    let domain = Domain::around(lumen, &network, &plan, &expected(), &()).expect("made");
+    assert_eq!(domain.regions, [NamedRegion::new(2, "wall")]);
     let volume = &domain.mesh;
     assert!(check_tets(&volume.mesh, None).failed().next().is_none());
     let mut outer: Vec<[u32; 3]> = anastomesh_mesh::adjacency::boundary_faces(&volume.mesh);

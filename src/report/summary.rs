@@ -1,12 +1,13 @@
 //! Short summary of a run: input, mesh, fidelity, validity, output files, time.
 
 use super::rows::{Ended, row};
+use crate::domain::ShellsReport;
 use crate::fidelity::{Changes, Fidelity};
 use crate::pipeline::{Forecast, RunReport, named};
 use crate::run::Attempt;
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::{faults, shape, sizes, tally};
-use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, rounded, seconds_of};
+use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, percent, place, rounded, seconds_of};
 use anastomesh_network::{NameOf, RefineReport};
 use std::fmt::{self, Write as _};
 
@@ -26,6 +27,8 @@ pub struct Summary<'a> {
     pub name: NameOf<'a>,
     /// Check result; `None` without a mesh.
     pub check: Option<&'a CheckReport>,
+    /// Thickness of shells around the lumen; `None` without any.
+    pub shells: Option<&'a ShellsReport>,
     pub fidelity: Option<&'a Fidelity>,
     /// Changes of the network; `None` without a mesh.
     pub changes: Option<&'a Changes>,
@@ -47,6 +50,9 @@ impl fmt::Display for Summary<'_> {
         if let Some(check) = self.check {
             out.write_str(&of_mesh(check))?;
         }
+        if let Some(shells) = self.shells {
+            out.write_str(&row("shells", &of_shells(shells)))?;
+        }
         out.write_str(&fidelity_rows(self.fidelity, self.changes, self.name))?;
         out.write_str(&self.ended.rows(&self.run.stages))?;
         self.check.map_or(Ok(()), |check| out.write_str(&of_check(check, self.listed)))
@@ -61,6 +67,17 @@ pub fn fidelity_rows(fidelity: Option<&Fidelity>, changes: Option<&Changes>, nam
         rows += &row("changes", &changes.text(name));
     }
     rows
+}
+
+/// Thickness of shells in one line.
+fn of_shells(shells: &ShellsReport) -> String {
+    let ShellsReport { points, complete, thin, thinnest } = *shells;
+    let full = percent(complete as f64 / points.max(1) as f64);
+    let least = thinnest.map_or_else(String::new, |(share, at)| {
+        let share = percent(share);
+        format!("; least {share} at {}, below half at {}", place(at), counted(thin, "point"))
+    });
+    format!("full thickness at {full} of the wall{least}")
 }
 
 /// Passes over the network with the fault of each; `None` if there was one alone.
@@ -190,7 +207,7 @@ mod tests {
     fn summary<'a>(run: &'a RunReport, check: Option<&'a CheckReport>, ended: Ended) -> Summary<'a> {
         let name: NameOf = &|node| (node + 1).to_string();
         let (refine, fidelity, changes) = (None, None, None);
-        Summary { run, refine, attempts: (&[], 0), name, check, fidelity, changes, ended, listed: false }
+        Summary { run, refine, attempts: (&[], 0), name, check, shells: None, fidelity, changes, ended, listed: false }
     }
 
     fn run() -> RunReport {

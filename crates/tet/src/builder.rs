@@ -238,11 +238,10 @@ impl Tetrahedralizer {
     /// # Errors
     /// [`TetError`]: the fault of the input, or the part that could not be recovered.
     pub fn run<'a>(&self, input: impl Into<PlcRef<'a>>) -> Result<Tetrahedralization, TetError> {
-        self.run_borrowed(input.into())
+        self.run_watched(input.into(), &self.watch())
     }
 
-    fn run_borrowed(&self, plc: PlcRef) -> Result<Tetrahedralization, TetError> {
-        let watch = self.watch();
+    fn run_watched(&self, plc: PlcRef, watch: &Watch) -> Result<Tetrahedralization, TetError> {
         watch.report(Stage::Validate, 0, 1)?;
         input::check_lengths(plc)?;
         let surface = plc.surface;
@@ -270,7 +269,7 @@ impl Tetrahedralizer {
             strict: self.strict,
             max_tets: Some(self.max_tets),
             label: true,
-            watch: &watch,
+            watch,
         };
         let (filled, layers, outer) = match &self.layers {
             Some(layers) => {
@@ -386,6 +385,14 @@ impl Tetrahedralizer {
         watch.report(Stage::Certify, 1, 1)?;
         Ok(Tetrahedralization { mesh, faces, ..Tetrahedralization::default() })
     }
+}
+
+/// Fills a closed surface in any orientation, as [`Tetrahedralizer::run`] does.
+///
+/// # Errors
+/// Those of [`Tetrahedralizer::run`]; [`TetError::Cancelled`] if the watch asks to stop.
+pub fn fill_watched(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, TetError> {
+    by.run_watched(surface.into(), watch)
 }
 
 /// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.

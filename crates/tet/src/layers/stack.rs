@@ -107,6 +107,11 @@ impl Numbers {
         if self.rank(a) < self.rank(b) { [[a0, b0, b1], [a0, b1, a1]] } else { [[a0, b0, a1], [b0, b1, a1]] }
     }
 
+    /// Tetrahedra at a wall triangle seen from outside, from the wall inwards.
+    pub fn tets_at(&self, triangle: [u32; 3]) -> impl Iterator<Item = [u32; 4]> {
+        (0..self.layers).flat_map(move |layer| self.prism(triangle, layer))
+    }
+
     /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
     fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
         let mut sorted = triangle;
@@ -150,17 +155,12 @@ impl<'a> Stack<'a> {
     /// Wall triangles with a tetrahedron that is not positive.
     pub fn turned(&self) -> Vec<[u32; 3]> {
         let is_turned = |triangle: &&[u32; 3]| {
-            self.tets_at(**triangle).any(|tet| {
+            self.numbers.tets_at(**triangle).any(|tet| {
                 let [a, b, c, d] = tet.map(|v| &self.points[v as usize]);
                 orient3d(a, b, c, d) <= 0.0
             })
         };
         self.wall.par_iter().filter(is_turned).copied().collect()
-    }
-
-    /// Tetrahedra at a wall triangle, from the wall inwards.
-    pub fn tets_at(&self, triangle: [u32; 3]) -> impl Iterator<Item = [u32; 4]> {
-        (0..self.numbers.layers).flat_map(move |layer| self.numbers.prism(triangle, layer))
     }
 
     /// Positions of all copies.
@@ -178,7 +178,7 @@ impl<'a> Stack<'a> {
     /// the first ones.
     pub fn around(self, core: &TetMesh) -> (TetMesh, usize) {
         let given = self.numbers.slot.len() as u32;
-        let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.tets_at(triangle)).collect();
+        let mut tets: Vec<[u32; 4]> = self.wall.iter().flat_map(|&triangle| self.numbers.tets_at(triangle)).collect();
         let of_layers = tets.len();
         let Self { numbers, mut points, .. } = self;
         let name = |v: u32| if v < given { numbers.copy(v, numbers.layers) } else { numbers.len() + v - given };

@@ -6,13 +6,16 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Unit vectors that lead away from a wall, whose triangles are seen from inside. At the rim of a cap they lie in its plane.
-pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> Vec<Vec3> {
+/// Also returns the normals of these planes, zero for other vertices.
+pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> [Vec<Vec3>; 2] {
     let mut ways = Directions::new(&surface.points, wall);
     let mut is_held = vec![false; surface.points.len()];
+    let mut planes = vec![Vec3::zeros(); surface.points.len()];
     for (_, triangles) in of_caps(surface, caps) {
         let (centre, normal) = plane(&surface.points, &triangles);
         for v in triangles.into_iter().flatten().map(|v| v as usize) {
             is_held[v] = true;
+            planes[v] = normal;
             let way = surface.points[v] - centre;
             // Vertices inside the cap have no triangle of the wall.
             if ways.ways[v] != Vec3::zeros() {
@@ -21,7 +24,7 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
         }
     }
     ways.smooth(wall, &is_held);
-    ways.ways
+    [ways.ways, planes]
 }
 
 /// Centre of area and unit normal of a cap.

@@ -6,10 +6,11 @@
 //! that is one to one on the boundary is one to one inside, so the shells and a mesh of the inside form one valid mesh.
 //!
 //! Where the outside is too narrow, or the surface is so curved that prisms would invert, the shells become thinner
-//! (`heights`, `settle`). They never end.
+//! (`heights`, `settle`). They never end. Poor prisms get other outer positions (`improve`).
 
 mod directions;
 mod heights;
+mod improve;
 mod settle;
 #[cfg(test)]
 mod tests;
@@ -93,7 +94,7 @@ pub struct Ring {
 impl Shells {
     /// Grows shells around a closed surface, which must be oriented outwards.
     ///
-    /// `caps` has the cap of each triangle: flat parts without shells. `None` is the wall. `around` is a closed surface
+    /// `caps` has the cap of each triangle: flat, connected parts without shells. `None` is the wall. `around` is a closed surface
     /// outside, which the shells do not touch.
     ///
     /// ```
@@ -189,7 +190,7 @@ impl Settled<'_> {
         let shell_of_layer = |layer: u32| first.partition_point(|&start| start <= layer) as u32 - 1;
         let mut made = Shells { shares, ..Shells::default() };
         for &triangle in given.wall {
-            for (tet, layer) in stack.tets_at(triangle).zip((0..).flat_map(|layer| [layer; 3])) {
+            for (tet, layer) in stack.numbers.tets_at(triangle).zip((0..).flat_map(|layer| [layer; 3])) {
                 made.tets.push(tet);
                 made.shell_of.push(shell_of_layer(layer));
             }

@@ -2,6 +2,7 @@
 
 use super::directions::directions;
 use super::heights::heights;
+use super::improve::Improver;
 use super::{Shell, depths, of_caps};
 use crate::contacts::contacts;
 use crate::error::{Obstacle, Stuck, TetError};
@@ -15,6 +16,8 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 const MAX_PASSES: usize = 60;
 /// Factor of the thickness at an obstacle, at first and after some passes.
 const FACTORS: [f64; 2] = [0.75, 0.4];
+/// Fraction of the thickness wanted below which the search ends.
+const LEAST: f64 = 1e-3;
 /// Passes with the first factor.
 const PATIENT: usize = 20;
 
@@ -40,9 +43,10 @@ pub(super) struct Settled<'a> {
 pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>, TetError> {
     let Given { surface, wall, caps, shells, around } = *given;
     let points = &surface.points;
-    let ways = directions(surface, wall, caps);
+    let [ways, planes] = directions(surface, wall, caps);
+    let stuck = |triangle: [u32; 3], reason| Err(TetError::Stuck { part: Obstacle::Triangle(triangle), reason });
     if let Some(&t) = wall.iter().find(|t| t.iter().any(|&v| ways[v as usize] == Vec3::zeros())) {
-        return Err(TetError::Stuck { part: Obstacle::Triangle(t), reason: Stuck::Layer });
+        return stuck(t, Stuck::Layer);
     }
     let on_wall = vertices_of(wall, points.len());
     let wanted: Vec<f64> = (0..points.len()).map(|v| shells.iter().map(|shell| shell.thickness[v]).sum()).collect();
@@ -50,7 +54,8 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
     let is_rim = rims(surface, |t| caps[t].is_none());
     let numbers = Numbers::new(on_wall.iter().copied(), is_rim.clone(), shells.iter().map(|s| s.layers).sum());
     let outside = Outside::new(&numbers, given);
-    let places = Places {
+    let improver = Improver::new((surface, wall), &numbers, shells, &planes, &heights);
+    let mut places = Places {
         surface,
         wall,
         is_rim,
@@ -58,25 +63,35 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
         is_held: on_wall.iter().map(|on_wall| !on_wall).collect(),
         is_narrow: true,
     };
-    let mut offsets = Ways::new(&places);
+    let length = |outer: &[Point3], v: usize| (outer[v] - points[v]).norm();
     for pass in 0..MAX_PASSES {
         watch.ask()?;
-        offsets.drawn_back = FACTORS[usize::from(pass >= PATIENT)];
-        let stack = Stack::of_copies(wall, numbers.clone(), copies(surface, &on_wall, &offsets.inner(), shells));
+        improver.improve(&mut places.wanted);
+        let stack = Stack::of_copies(wall, numbers.clone(), copies(surface, &on_wall, &places.wanted, shells));
         let mut obstacles = stack.turned();
         let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
         if obstacles.is_empty() {
             obstacles = outside.meeting(stack.points());
         }
-        let Some(&first) = obstacles.first() else {
-            let share = |v: usize| if on_wall[v] { offsets.shares[v] * heights[v] / wanted[v] } else { 1.0 };
+        if obstacles.is_empty() {
+            let share = |v: usize| match length(&places.wanted, v) / wanted[v] {
+                // Rounding of a complete thickness.
+                share if !on_wall[v] || share > 1.0 - 1e-9 => 1.0,
+                share => share,
+            };
             return Ok(Settled { stack, shares: (0..points.len()).map(share).collect() });
-        };
-        if pass + 1 == MAX_PASSES || !offsets.reduce_offsets(obstacles.as_flattened()) {
-            return Err(TetError::Stuck { part: Obstacle::Triangle(first), reason });
         }
+        let mut offsets = Ways::new(&places);
+        offsets.drawn_back = FACTORS[usize::from(pass >= PATIENT)];
+        offsets.reduce_offsets(obstacles.as_flattened());
+        let outer = offsets.inner();
+        let least = |t: &&[u32; 3]| t.iter().any(|&v| length(&outer, v as usize) < LEAST * wanted[v as usize]);
+        if let Some(&t) = obstacles.iter().find(least) {
+            return stuck(t, reason);
+        }
+        places.wanted = outer;
     }
-    Err(TetError::Stuck { part: Obstacle::Triangle(wall[0]), reason: Stuck::Layer })
+    stuck(wall[0], Stuck::Budget)
 }
 
 /// The surface, and the obstacles with it.

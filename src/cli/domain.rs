@@ -1,0 +1,267 @@
+//! Options for the regions around a lumen.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use super::exit::Failure;
+use super::network::NetworkArgs;
+use super::numbers::{above_zero, number};
+use super::units::Units;
+use crate::domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh_io::surface::read_surface;
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Regions")]
+pub struct DomainArgs {
+    /// Vessel wall around the lumen, by its thickness: a length (0.05, 5um), a share of the radius (0.2r), a sum of these
+    /// (5um+0.1r), or the name of an array of the network
+    #[arg(long, value_name = "THICKNESS", value_parser = checked::<ThicknessArg>)]
+    wall: Option<String>,
+    /// Number of layers of the vessel wall
+    #[arg(long, value_name = "N", default_value_t = 2, requires = "wall")]
+    wall_layers: u32,
+    /// Ratio of the thickness of each layer of the wall to that of the previous one, outwards
+    #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = number, requires = "wall", allow_negative_numbers = true)]
+    wall_growth: f64,
+    /// Perivascular space around the wall, or around the lumen without one; THICKNESS as for `--wall`
+    #[arg(long, value_name = "THICKNESS[:LAYERS]", value_parser = checked::<LayeredArg>)]
+    annulus: Option<String>,
+    /// Further shell outside these, for example `adventitia=0.1r:2`; repeatable, from the inside outwards
+    #[arg(long, value_name = "NAME=THICKNESS[:LAYERS]", value_parser = checked::<ShellArg>)]
+    shell: Vec<String>,
+    /// Tissue around the vessels: a box with a margin, or the inside of a closed surface (.stl, .ply, .obj, .off, .vtp)
+    #[arg(long, value_name = "box[:MARGIN]|SURFACE", value_parser = checked::<TissueArg>)]
+    tissue: Option<String>,
+    /// Maximum edge length in the tissue (default: growth alone determines it)
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "tissue", allow_negative_numbers = true)]
+    tissue_size: Option<f64>,
+    /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels
+    #[arg(long, value_name = "G", default_value_t = TissuePlan::GROWTH, value_parser = number, requires = "tissue", allow_negative_numbers = true)]
+    tissue_growth: f64,
+    /// Region to leave out of the result, for example lumen; repeatable
+    #[arg(long, value_name = "REGION")]
+    without: Vec<String>,
+}
+
+/// Text that can be read as a `T`.
+fn checked<T: FromStr<Err = String>>(text: &str) -> Result<String, String> {
+    text.parse::<T>().map(|_| text.to_owned())
+}
+
+/// Reads text that was checked.
+fn read<T: FromStr<Err = String>>(text: &str) -> Result<T, Failure> {
+    text.parse().map_err(Failure::usage)
+}
+
+/// Thickness on the command line.
+#[derive(Clone, Debug, PartialEq)]
+enum ThicknessArg {
+    /// Lengths with their unit, and shares of the radius.
+    Sum { lengths: Vec<(f64, Option<Units>)>, radii: f64 },
+    /// Name of an array.
+    Array(String),
+}
+
+/// Thickness with a number of layers.
+#[derive(Clone, Debug, PartialEq)]
+struct LayeredArg {
+    thickness: ThicknessArg,
+    layers: Option<u32>,
+}
+
+/// Shell with a name.
+#[derive(Clone, Debug, PartialEq)]
+struct ShellArg {
+    name: String,
+    layered: LayeredArg,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum TissueArg {
+    Box(Option<f64>),
+    Surface(PathBuf),
+}
+
+impl FromStr for ThicknessArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+            return Ok(Self::Array(text.into()));
+        }
+        let (mut lengths, mut radii) = (Vec::new(), 0.0);
+        for term in text.split('+').map(str::trim) {
+            let end = term.find(|c: char| c.is_alphabetic() && c != 'e').unwrap_or(term.len());
+            let (value, unit) = term.split_at(end);
+            let value: f64 = value.trim().parse().map_err(|_| {
+                format!(
+                    "'{term}' is not a thickness: give a length, a share of the radius as in 0.2r, or a sum of both"
+                )
+            })?;
+            match unit {
+                "" => lengths.push((value, None)),
+                "r" => radii += value,
+                unit => lengths.push((value, Some(unit.parse()?))),
+            }
+        }
+        Ok(Self::Sum { lengths, radii })
+    }
+}
+
+impl FromStr for LayeredArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (thickness, layers) = match text.split_once(':') {
+            Some((thickness, layers)) => {
+                let count = layers.parse().map_err(|_| format!("'{layers}' is not a number of layers"))?;
+                (thickness, Some(count))
+            }
+            None => (text, None),
+        };
+        Ok(Self { thickness: thickness.parse()?, layers })
+    }
+}
+
+impl FromStr for ShellArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, layered) =
+            text.split_once('=').ok_or_else(|| format!("'{text}' has no name: give NAME=THICKNESS[:LAYERS]"))?;
+        Ok(Self { name: name.into(), layered: layered.parse()? })
+    }
+}
+
+impl FromStr for TissueArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.strip_prefix("box") {
+            Some("") => Ok(Self::Box(None)),
+            Some(rest) if rest.starts_with(':') => {
+                let margin = rest[1..].parse().map_err(|_| format!("'{}' is not a margin", &rest[1..]))?;
+                Ok(Self::Box(Some(margin)))
+            }
+            _ => Ok(Self::Surface(text.into())),
+        }
+    }
+}
+
+impl ThicknessArg {
+    /// Thickness in the unit of the network.
+    fn of(&self, network: &NetworkArgs) -> Result<Thickness, Failure> {
+        let name = match self {
+            Self::Sum { lengths, radii } => {
+                let mut length = 0.0;
+                for &(value, unit) in lengths {
+                    length += value * unit.map_or(Ok(1.0), |unit| factor(unit, network))?;
+                }
+                return Ok(Thickness::Law { length, radii: *radii });
+            }
+            Self::Array(name) => name,
+        };
+        // The reader takes the array for radii.
+        let options = network.options(true).radius_array(name.clone()).radius(None).diameters(false).radius_scale(None);
+        let file = network.file_with(&options)?;
+        Ok(Thickness::PerNode(file.skeleton.nodes.iter().map(|node| node.radius).collect()))
+    }
+}
+
+/// Factor from a unit to that of the network.
+fn factor(unit: Units, network: &NetworkArgs) -> Result<f64, Failure> {
+    let [_, of_network] = network.units.map(Units::names).ok_or_else(|| {
+        let [unit, _] = unit.names();
+        Failure::usage(format!("a thickness in {unit} needs the unit of the network: give --units, or omit '{unit}'"))
+    })?;
+    let [from, _] = unit.names();
+    let conversion: Units = format!("{from}:{of_network}").parse().map_err(Failure::usage)?;
+    Ok(conversion.factor().unwrap_or(1.0))
+}
+
+impl DomainArgs {
+    /// Requested regions. Reads the surface around the tissue, and arrays of the network.
+    pub fn plan(&self, network: &NetworkArgs) -> Result<DomainPlan, Failure> {
+        let mut shells = Vec::new();
+        if let Some(wall) = &self.wall {
+            let shell = ShellPlan::new("wall", read::<ThicknessArg>(wall)?.of(network)?);
+            shells.push(shell.layers(self.wall_layers).growth(self.wall_growth));
+        }
+        if let Some(annulus) = &self.annulus {
+            shells.push(read::<LayeredArg>(annulus)?.shell("annulus", network)?);
+        }
+        for shell in &self.shell {
+            let ShellArg { name, layered } = read(shell)?;
+            shells.push(layered.shell(&name, network)?);
+        }
+        let mut plan = DomainPlan::default().shells(shells).without(self.without.clone());
+        if let Some(tissue) = &self.tissue {
+            let shape = read::<TissueArg>(tissue)?.shape()?;
+            plan.tissue = Some(TissuePlan::new(shape).size(self.tissue_size).growth(self.tissue_growth));
+        }
+        plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
+        Ok(plan)
+    }
+
+    /// Options as command-line text.
+    pub fn typed(&self) -> String {
+        let mut text = String::new();
+        let mut add = |option: &str, value: &dyn fmt::Display| text += &format!(" --{option} {value}");
+        if let Some(wall) = &self.wall {
+            add("wall", wall);
+            add("wall-layers", &self.wall_layers);
+            add("wall-growth", &self.wall_growth);
+        }
+        self.annulus.iter().for_each(|annulus| add("annulus", annulus));
+        self.shell.iter().for_each(|shell| add("shell", shell));
+        if let Some(tissue) = &self.tissue {
+            add("tissue", tissue);
+            self.tissue_size.iter().for_each(|size| add("tissue-size", size));
+            add("tissue-growth", &self.tissue_growth);
+        }
+        self.without.iter().for_each(|region| add("without", region));
+        text
+    }
+}
+
+impl LayeredArg {
+    fn shell(&self, name: &str, network: &NetworkArgs) -> Result<ShellPlan, Failure> {
+        let shell = ShellPlan::new(name, self.thickness.of(network)?);
+        Ok(self.layers.map_or(shell.clone(), |layers| shell.layers(layers)))
+    }
+}
+
+impl TissueArg {
+    fn shape(self) -> Result<TissueShape, Failure> {
+        match self {
+            Self::Box(margin) => Ok(TissueShape::Box { margin }),
+            Self::Surface(path) => {
+                Ok(TissueShape::Organ(read_surface(&path).map_err(|e| Failure::input(e.to_string()))?))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thicknesses_are_sums_or_arrays() {
+        let read = |text: &str| text.parse::<ThicknessArg>();
+        let sum = |lengths: &[(f64, Option<Units>)], radii| Ok(ThicknessArg::Sum { lengths: lengths.to_vec(), radii });
+        let um: Units = "um".parse().expect("a unit");
+        assert_eq!(read("0.2r"), sum(&[], 0.2));
+        assert_eq!(read("5um+0.1r"), sum(&[(5.0, Some(um))], 0.1));
+        assert_eq!(read("1e-3"), sum(&[(1e-3, None)], 0.0));
+        assert_eq!(read("wall_thickness"), Ok(ThicknessArg::Array("wall_thickness".into())));
+        assert!(read("0.2q").is_err() && read("+").is_err() && read("1..2").is_err());
+        let shell: ShellArg = "media=0.1r:3".parse().expect("a shell");
+        assert_eq!((shell.name.as_str(), shell.layered.layers), ("media", Some(3)));
+        assert!("0.1r".parse::<ShellArg>().is_err() && "a=0.1r:x".parse::<ShellArg>().is_err());
+        assert_eq!("box:2.5".parse(), Ok(TissueArg::Box(Some(2.5))));
+        assert_eq!("organ.stl".parse(), Ok(TissueArg::Surface("organ.stl".into())));
+        assert!("box:wide".parse::<TissueArg>().is_err());
+    }
+}
