@@ -16,10 +16,10 @@ use crate::report::verdict::Verdict;
 use anastomesh_io::volume::{MeshFile, MeshFormat, VtuPieces, VtuPiecesError, read_mesh};
 use anastomesh_mesh::check::parts::{PiecesError, check_pieces};
 use anastomesh_mesh::check::text::conditions;
-use anastomesh_mesh::check::{CheckReport, check_tets, check_volume};
+use anastomesh_mesh::check::{CheckReport, check_regions, check_tets, check_volume};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::progress::Stage;
-use anastomesh_mesh::{TET_FACES, VolumeMesh};
+use anastomesh_mesh::{TET_FACES, VolumeMesh, face_key};
 use rustc_hash::FxHashMap;
 
 /// Memory of an in-memory check per byte of the file, in bytes.
@@ -87,13 +87,16 @@ fn write_page(args: &Args, report: &CheckReport, verdict: &Verdict, mut mesh: Op
 fn as_a_whole(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
     let mut file = read_mesh(&args.mesh).map_err(|e| Failure::input(e.to_string()))?;
     if file.notes.expectation.is_none() {
-        drop_interior_faces(&mut file.volume);
+        drop_interior_faces(&mut file.volume, !file.notes.regions.is_empty());
     }
     Ok((of_whole(&file), OpenedMesh::Whole(file)))
 }
 
 fn of_whole(file: &MeshFile) -> CheckReport {
     let expectation = file.notes.expectation.as_ref();
+    if !file.notes.regions.is_empty() {
+        return check_regions(&file.volume, &file.notes.regions, expectation);
+    }
     if file.labelled { check_volume(&file.volume, expectation) } else { check_tets(&file.volume.mesh, expectation) }
 }
 
@@ -120,6 +123,9 @@ fn share(memory: u64) -> usize {
 /// Checks pieces; the inner error is the reason why they cannot be checked separately.
 fn of_pieces(path: &Path, pieces: &VtuPieces, memory: u64) -> Result<Result<CheckReport, String>, Failure> {
     let expectation = pieces.notes().expectation.as_ref();
+    if !pieces.notes().regions.is_empty() {
+        return Ok(Err("regions are checked as a whole".into()));
+    }
     if expectation.is_none() {
         return Ok(Err("it does not contain the expected loops and terminals".into()));
     }
@@ -140,22 +146,21 @@ pub fn check_opened(path: &Path, opened: &OpenedMesh, memory: u64) -> Result<Opt
     Ok(report.map_err(unchecked).ok())
 }
 
-/// Removes labelled faces between two tetrahedra. Meshes of other programs and of facet complexes also label interior
-/// surfaces; in a mesh of a network they are an error.
-fn drop_interior_faces(volume: &mut VolumeMesh) {
-    let sorted = |mut face: [u32; 3]| {
-        face.sort_unstable();
-        face
-    };
-    let mut owners: FxHashMap<[u32; 3], u32> = volume.boundary.iter().map(|&face| (sorted(face), 0)).collect();
-    for t in &volume.mesh.tets {
+/// Removes labelled faces between two tetrahedra, of one region if the mesh has regions. Meshes of other programs and of
+/// facet complexes also label interior surfaces; in a mesh of a network they are an error.
+fn drop_interior_faces(volume: &mut VolumeMesh, has_regions: bool) {
+    let mut owners: FxHashMap<[u32; 3], Vec<i32>> =
+        volume.boundary.iter().map(|&face| (face_key(face), Vec::new())).collect();
+    for (i, t) in volume.mesh.tets.iter().enumerate() {
+        let region = volume.tet_block.get(i).copied().filter(|_| has_regions).unwrap_or(0);
         for side in TET_FACES {
-            if let Some(count) = owners.get_mut(&sorted(side.map(|corner| t[corner]))) {
-                *count += 1;
+            if let Some(regions) = owners.get_mut(&face_key(side.map(|corner| t[corner]))) {
+                regions.push(region);
             }
         }
     }
-    let inside = |face: &[u32; 3]| owners.get(&sorted(*face)).is_some_and(|&count| count >= 2);
+    let is_one = |regions: &Vec<i32>| regions.len() >= 2 && regions.windows(2).all(|pair| pair[0] == pair[1]);
+    let inside = |face: &[u32; 3]| owners.get(&face_key(*face)).is_some_and(is_one);
     let keep: Vec<bool> = volume.boundary.iter().map(|face| !inside(face)).collect();
     retain(&mut volume.boundary, &keep);
     retain(&mut volume.boundary_patch, &keep);

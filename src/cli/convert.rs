@@ -1,7 +1,7 @@
 //! `anastomesh convert`: conversion of file formats, and of volume meshes to their boundary.
 
-use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::{fmt, iter};
 
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ use anastomesh_io::npy;
 use anastomesh_io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
-use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
+use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
@@ -45,6 +45,10 @@ pub struct Args {
     /// Write only the wall (patch 1) of the boundary, without inlets and outlets
     #[arg(long)]
     no_caps: bool,
+    /// Write each region of a mesh with regions to a file beside the output, too: `OUT_lumen.vtu`, `OUT_wall.vtu`, …, with
+    /// the numbers of points and cells in the whole mesh (`GlobalNodeID`, `GlobalElementID`)
+    #[arg(long)]
+    split_regions: bool,
     /// Memory limit for VTU files of `mesh`, which are then read block by block. Other files are loaded completely
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = limits::size)]
     memory: u64,
@@ -79,6 +83,9 @@ struct Output {
     to: FileKind,
     #[serde(flatten)]
     counts: Written,
+    /// Files of the regions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    regions: Vec<PathBuf>,
 }
 
 /// Size of the written data.
@@ -115,16 +122,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     stop.keep();
-    let counts = pool.install(|| match from {
+    let (counts, regions) = pool.install(|| match from {
         FileKind::Mesh => args.convert_mesh(to, &bars),
-        FileKind::Surface => args.convert_surface(&bars),
-        FileKind::Network => args.convert_network(),
+        FileKind::Surface => args.convert_surface(&bars).map(|counts| (counts, Vec::new())),
+        FileKind::Network => args.convert_network().map(|counts| (counts, Vec::new())),
     })?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
-        print(true, &Output { program, from, to, counts }, String::new)?;
+        print(true, &Output { program, from, to, counts, regions }, String::new)?;
     } else if !args.common.quiet {
-        log::result(&format!("{counts}{}", ended(&[&args.output]).rows(&[])));
+        let files: Vec<&Path> = iter::once(&args.output).chain(&regions).map(PathBuf::as_path).collect();
+        log::result(&format!("{counts}{}", ended(&files).rows(&[])));
     }
     Ok(conclude(&args.common, &Verdict::good("converted")))
 }
@@ -152,16 +160,26 @@ impl Args {
             (from, to) => return Err(Failure::usage(Unlike { from, to }.to_string())),
         }
         .map_err(Failure::input)?;
+        if self.split_regions && (from, to) != (FileKind::Mesh, FileKind::Mesh) {
+            return Err(Failure::usage("--split-regions needs a volume mesh as input and as output"));
+        }
         Ok(to)
     }
 
-    fn convert_mesh(&self, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
+    /// Returns the files of the regions, too.
+    fn convert_mesh(&self, to: FileKind, bars: &Bars) -> Result<(Written, Vec<PathBuf>), Failure> {
         let stopped = |failure| if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { failure };
         let mut opened = OpenedMesh::open(&self.input, self.memory).map_err(stopped)?;
         if to == FileKind::Surface {
             opened.label_boundary();
         }
-        self.write(opened.source(), opened.notes(), to, bars)
+        let (mesh, notes) = (opened.source(), opened.notes());
+        if !self.split_regions {
+            return Ok((self.write(mesh, notes, to, bars)?, Vec::new()));
+        }
+        let regions = write_regions(&self.output, mesh, notes, self.grid.options(), bars);
+        let regions = regions.map_err(|e| failed(&e, bars))?;
+        Ok((self.write(mesh, notes, to, bars)?, regions))
     }
 
     fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: FileKind, bars: &Bars) -> Result<Written, Failure> {

@@ -6,7 +6,7 @@ use super::organ::{check_organ, organ};
 use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan, TissueShape};
 use super::surface::LumenSurface;
 use crate::fidelity::Tubes;
-use anastomesh_mesh::check::{CheckReport, Expectation, check_tets};
+use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::Skeleton;
@@ -70,10 +70,7 @@ impl Domain {
         };
         let (mesh, regions) = assemble(lumen, &layout, tissue.as_ref(), plan);
         progress.at(Stage::Check, 0, 0);
-        let check = {
-            let _ = expectation;
-            check_tets(&mesh.mesh, None)
-        };
+        let check = check_regions(&mesh, &regions, Some(expectation));
         Ok(Self { mesh, regions, shells: report, check })
     }
 }

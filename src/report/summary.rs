@@ -5,8 +5,8 @@ use crate::domain::ShellsReport;
 use crate::fidelity::{Changes, Fidelity};
 use crate::pipeline::{Forecast, RunReport, named};
 use crate::run::Attempt;
-use anastomesh_mesh::check::CheckReport;
-use anastomesh_mesh::check::text::{faults, shape, sizes, tally};
+use anastomesh_mesh::check::text::{faults, region_sizes, shape, sizes, tally};
+use anastomesh_mesh::check::{CheckReport, RegionCounts};
 use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, percent, place, rounded, seconds_of};
 use anastomesh_network::{NameOf, RefineReport};
 use std::fmt::{self, Write as _};
@@ -164,7 +164,9 @@ impl Summary<'_> {
 /// Size and quality of the mesh.
 pub fn of_mesh(check: &CheckReport) -> String {
     let shape = shape(check).map_or_else(String::new, |shape| row("shape", &shape));
-    row("mesh", &sizes(check)) + &shape
+    let region = |region: &RegionCounts| row("region", &format!("{}: {}", region.name, region_sizes(region)));
+    let regions: String = check.regions.iter().map(region).collect();
+    row("mesh", &sizes(check)) + &regions + &shape
 }
 
 /// Options that show more faults.

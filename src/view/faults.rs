@@ -23,6 +23,7 @@ fn ids_of(kind: OffenderKind) -> &'static str {
         OffenderKind::TetPair => "tetrahedra",
         OffenderKind::Patch => "patch",
         OffenderKind::Node => "node",
+        OffenderKind::Region => "region",
     }
 }
 

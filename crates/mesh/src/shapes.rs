@@ -1,6 +1,7 @@
 //! Analytic meshes for tests.
 
-use super::{TetMesh, TriMesh};
+use super::region::{NamedRegion, RegionFace, region_faces};
+use super::{Patch, TetMesh, TriMesh, VolumeMesh};
 use crate::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
@@ -191,4 +192,50 @@ pub fn perturb(points: &mut [Point3], movable: &[bool], size: f64, seed: u64) {
     for (p, _) in points.iter_mut().zip(movable).filter(|(_, m)| **m) {
         *p += Vec3::new(next(), next(), next()) * size;
     }
+}
+
+/// Unit cube of three regions along z: a square channel (`lumen`), its `wall`, and the `tissue` around it. Each of the five
+/// bands across the cube has `fineness` layers of cells.
+///
+/// ```
+/// use anastomesh_mesh::shapes::walled_channel;
+///
+/// let (volume, regions) = walled_channel(1);
+/// assert_eq!(regions.iter().map(|region| region.name.as_str()).collect::<Vec<_>>(), ["lumen", "wall", "tissue"]);
+/// assert_eq!(volume.patches[2].name, "interface_lumen_wall");
+/// ```
+pub fn walled_channel(fineness: u32) -> (VolumeMesh, Vec<NamedRegion>) {
+    let mesh = cube_lattice(5 * fineness);
+    let centre = |t: &[u32]| t.iter().map(|&v| mesh.points[v as usize].coords).sum::<Vec3>() / t.len() as f64;
+    let of_tet = |t: &[u32; 4]| {
+        let c = centre(t);
+        match (c.x - 0.5).abs().max((c.y - 0.5).abs()) {
+            ..0.1 => 1,
+            ..0.3 => 2,
+            _ => 3,
+        }
+    };
+    let tet_block: Vec<i32> = mesh.tets.iter().map(of_tet).collect();
+    let names =
+        ["inlet", "outlet_0", "interface_lumen_wall", "interface_wall_tissue", "ring_inlet", "ring_outlet_0", "organ"];
+    let patch_of = |face: &RegionFace| {
+        let z = centre(&face.vertices).z;
+        match (face.region, face.beyond) {
+            (1, Some(_)) => 4,
+            (2, Some(_)) => 5,
+            (1, None) => 2 + i32::from(z > 0.5),
+            (2, None) => 6 + i32::from(z > 0.5),
+            _ => 8,
+        }
+    };
+    let faces = region_faces(&mesh, &tet_block);
+    let volume = VolumeMesh {
+        boundary: faces.iter().map(|face| face.vertices).collect(),
+        boundary_block: faces.iter().map(|face| face.region).collect(),
+        boundary_patch: faces.iter().map(patch_of).collect(),
+        patches: (2..).zip(names).map(|(id, name)| Patch { id, name: name.into(), cap: None }).collect(),
+        tet_block,
+        mesh,
+    };
+    (volume, vec![NamedRegion::new(1, NamedRegion::LUMEN), NamedRegion::new(2, "wall"), NamedRegion::new(3, "tissue")])
 }

@@ -6,7 +6,7 @@ use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 
 /// Faces of a positive tetrahedron, oriented outwards.
-const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+pub const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Faces of exactly one tetrahedron.
 pub struct Boundary {

@@ -21,6 +21,7 @@ mod labels;
 mod mesh;
 mod msh;
 mod network;
+mod regions;
 mod report;
 mod sets;
 mod surface;
@@ -50,6 +51,20 @@ pub struct Demands {
 
 /// Checks all conditions that apply to a mesh.
 pub fn verify(mesh: &Mesh, demands: &Demands) -> Report {
+    if mesh.regions.is_empty() {
+        return verify_whole(mesh, demands);
+    }
+    // The expectation is that of the lumen.
+    let whole = Mesh { expected_loops: None, expected_terminals: None, ..mesh.clone() };
+    let mut report = verify_whole(&whole, demands);
+    if [Condition::NotEmpty, Condition::IndicesInRange].iter().all(|&condition| report.holds(condition)) {
+        regions::verify(mesh, &mut report, |part| verify_whole(part, &Demands::default()));
+    }
+    report
+}
+
+/// Checks a mesh without regard to its regions.
+fn verify_whole(mesh: &Mesh, demands: &Demands) -> Report {
     let mut report = Report::default();
     let Some(boundary) = faces::check(mesh, &mut report) else { return report };
     boundary::check(mesh, &boundary, &mut report);

@@ -16,6 +16,10 @@ pub struct Mesh {
     pub is_undirected: bool,
     /// Patch of each labelled triangle.
     pub labels: Vec<i64>,
+    /// Region of each tetrahedron; empty in a mesh without regions.
+    pub tet_regions: Vec<i64>,
+    /// Ids and names of regions; empty in a mesh without regions.
+    pub regions: Vec<(i64, String)>,
     /// Ids and names of patches.
     pub patches: Vec<(i64, String)>,
     /// Caps of terminals, where the file describes them.
@@ -24,6 +28,13 @@ pub struct Mesh {
     pub expected_loops: Option<Vec<i64>>,
     /// Nodes of the network that have a cap, where the file stores them.
     pub expected_terminals: Option<Vec<i64>>,
+}
+
+impl Mesh {
+    /// Region of a tetrahedron; 0 if unknown.
+    pub(crate) fn region_of(&self, tet: usize) -> i64 {
+        self.tet_regions.get(tet).copied().unwrap_or(0)
+    }
 }
 
 /// Flat disc at a terminal of the network.

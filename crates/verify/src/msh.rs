@@ -66,6 +66,10 @@ fn notes(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
     let Ok(notes) = serde_json::from_str::<Value>(json) else { return fail("section $Anastomesh is not JSON") };
     let list = |name: &str| notes[name].as_array().map(|list| list.iter().filter_map(Value::as_i64).collect());
     (mesh.expected_loops, mesh.expected_terminals) = (list("loops"), list("terminals"));
+    for region in notes["regions"].as_array().into_iter().flatten() {
+        let name = region["name"].as_str().unwrap_or_default();
+        mesh.regions.push((region["id"].as_i64().unwrap_or(-1), name.to_owned()));
+    }
     let triple = |value: &Value| [0, 1, 2].map(|i| value[i].as_f64().unwrap_or(f64::NAN));
     for cap in notes["caps"].as_array().into_iter().flatten() {
         mesh.caps.push(Cap {
@@ -98,7 +102,12 @@ impl Parts {
     fn add_element(&mut self, kind: i64, label: i64, nodes: &[i64]) -> bool {
         let vertex = |node| self.numbers.get(&node).copied().unwrap_or(u32::MAX);
         match (kind, nodes) {
-            (TETRAHEDRON, &[a, b, c, d]) => self.mesh.tets.push([a, b, c, d].map(vertex)),
+            (TETRAHEDRON, &[a, b, c, d]) => {
+                self.mesh.tets.push([a, b, c, d].map(vertex));
+                if !self.mesh.regions.is_empty() {
+                    self.mesh.tet_regions.push(label);
+                }
+            }
             (TRIANGLE, &[a, b, c]) => {
                 self.mesh.triangles.push([a, b, c].map(vertex));
                 self.mesh.labels.push(label);
@@ -118,8 +127,8 @@ impl Parts {
                     (0..if dimension == 0 { 3 } else { 6 }).try_for_each(|_| entities.real().map(drop))?;
                     for i in 0..entities.size()? {
                         let label = entities.int()?;
-                        if dimension == 2 && i == 0 {
-                            labels.insert(tag, label);
+                        if i == 0 {
+                            labels.insert((dimension as i64, tag), label);
                         }
                     }
                     let bounds = if dimension == 0 { 0 } else { entities.size()? };
@@ -140,12 +149,12 @@ impl Parts {
         }
         let [blocks, _, _, _] = [elements.size()?, elements.size()?, elements.size()?, elements.size()?];
         for _ in 0..blocks {
-            let [_, tag, kind] = [elements.int()?, elements.int()?, elements.int()?];
+            let [dimension, tag, kind] = [elements.int()?, elements.int()?, elements.int()?];
             let Some(length) = [(POINT, 1), (LINE, 2), (TRIANGLE, 3), (TETRAHEDRON, 4)].iter().find(|k| k.0 == kind)
             else {
                 return fail(format!("elements of type {kind} are not supported"));
             };
-            let label = labels.get(&tag).copied().unwrap_or(0);
+            let label = labels.get(&(dimension, tag)).copied().unwrap_or(0);
             for _ in 0..elements.size()? {
                 elements.size()?;
                 let nodes = (0..length.1).map(|_| elements.size()).collect::<Read<Vec<_>>>()?;

@@ -78,6 +78,10 @@ conditions! {
     CapArea, "cap_area", "caps with a wrong area";
     /// The triangles of a cap face along its normal.
     CapNormal, "cap_normal", "caps that face inwards";
+    /// Every tetrahedron is in a named region, and no region is empty.
+    RegionsNamed, "regions_named", "tetrahedra without a named region, or empty regions";
+    /// Every face between two regions is labelled once, out of the smaller id, and no other face inside.
+    Interfaces, "interfaces", "labels that differ from the faces between regions";
     /// Every triangle of the input surface is a boundary face.
     SurfaceKept, "surface_kept", "triangles of the surface missing in the mesh";
     /// Every vertex of the wall is near the surface of a vessel.
@@ -149,6 +153,20 @@ impl Report {
         }
         self.outcomes.push(outcome);
         self.outcomes.last().is_some_and(|outcome| outcome.count == 0)
+    }
+
+    /// Adds the outcomes of a region.
+    pub(crate) fn merge(&mut self, part: Self, region: &str) {
+        for outcome in part.outcomes {
+            let first = outcome.first.iter().map(|violation| format!("region {region}: {violation}"));
+            if let Some(known) = self.outcomes.iter_mut().find(|known| known.condition == outcome.condition) {
+                known.first.extend(first.take(LISTED.saturating_sub(known.first.len())));
+                known.count += outcome.count;
+            } else {
+                let Outcome { condition, count, .. } = outcome;
+                self.outcomes.push(Outcome { condition, count, first: first.collect() });
+            }
+        }
     }
 
     /// True if a condition was checked and holds.

@@ -23,15 +23,18 @@ pub fn read(bytes: &[u8]) -> Read<Mesh> {
         Some(label) => Some(file.required("CellData", label)?.whole()?),
         None => None,
     };
-    cells(&file, &mut mesh, labels.as_deref())?;
+    let has_regions = names.contains(&"region");
+    let regions = has_regions.then(|| file.required("CellData", "region")?.whole()).transpose()?;
+    cells(&file, &mut mesh, [labels.as_deref(), regions.as_deref()])?;
     notes(&file, &mut mesh)?;
     Ok(mesh)
 }
 
-fn cells(file: &VtkFile, mesh: &mut Mesh, labels: Option<&[i64]>) -> Read<()> {
+fn cells(file: &VtkFile, mesh: &mut Mesh, [labels, regions]: [Option<&[i64]>; 2]) -> Read<()> {
     let of = |name| file.required("Cells", name)?.whole();
     let (connectivity, ends, types) = (of("connectivity")?, of("offsets")?, of("types")?);
-    if ends.len() != types.len() || labels.is_some_and(|labels| labels.len() != types.len()) {
+    let differs = |array: Option<&[i64]>| array.is_some_and(|array| array.len() != types.len());
+    if ends.len() != types.len() || differs(labels) || differs(regions) {
         return fail("arrays of cells differ in length");
     }
     let mut start = 0;
@@ -40,7 +43,10 @@ fn cells(file: &VtkFile, mesh: &mut Mesh, labels: Option<&[i64]>) -> Read<()> {
         let Some(vertices) = connectivity.get(start..end) else { return fail(format!("cell {i} has a bad offset")) };
         start = end;
         match (kind, vertices) {
-            (TETRAHEDRON, &[a, b, c, d]) => mesh.tets.push([a, b, c, d].map(index)),
+            (TETRAHEDRON, &[a, b, c, d]) => {
+                mesh.tets.push([a, b, c, d].map(index));
+                mesh.tet_regions.extend(regions.map(|regions| regions[i]));
+            }
             (TRIANGLE, &[a, b, c]) => {
                 mesh.triangles.push([a, b, c].map(index));
                 mesh.labels.push(labels.map_or(0, |labels| labels[i]));
@@ -52,6 +58,13 @@ fn cells(file: &VtkFile, mesh: &mut Mesh, labels: Option<&[i64]>) -> Read<()> {
     Ok(())
 }
 
+/// Texts that end with zeros.
+fn texts(bytes: Vec<i64>) -> Vec<String> {
+    let bytes: Vec<u8> = bytes.into_iter().map(|b| b as u8).collect();
+    let texts = bytes.strip_suffix(&[0]).unwrap_or(&bytes).split(|&b| b == 0);
+    texts.map(|text| String::from_utf8_lossy(text).into_owned()).collect()
+}
+
 /// Field arrays that `anastomesh` writes: names of patches, caps and the expectation.
 fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
     let whole = |name| match file.array("FieldData", name)? {
@@ -59,11 +72,12 @@ fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
         None => Ok(None),
     };
     if let Some(bytes) = whole("patch_names")? {
-        let bytes: Vec<u8> = bytes.into_iter().map(|b| b as u8).collect();
-        let names = bytes.strip_suffix(&[0]).unwrap_or(&bytes).split(|&b| b == 0).enumerate();
         // The first is the name of the volume. Numbers without a patch have no name.
-        let named = names.skip(1).map(|(id, name)| (id as i64, String::from_utf8_lossy(name).into_owned()));
+        let named = (0..).zip(texts(bytes)).skip(1);
         mesh.patches = named.filter(|(_, name)| !name.is_empty()).collect();
+    }
+    if let (Some(ids), Some(names)) = (whole("region_ids")?, whole("region_names")?) {
+        mesh.regions = ids.into_iter().zip(texts(names)).collect();
     }
     mesh.expected_loops = whole("expected_loops")?;
     mesh.expected_terminals = whole("expected_terminals")?;

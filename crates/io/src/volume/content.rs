@@ -2,7 +2,8 @@
 
 use crate::flow::Flow;
 use anastomesh_mesh::check::Expectation;
-use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
+use anastomesh_mesh::region::{NamedRegion, has_interfaces, label_faces};
+use anastomesh_mesh::{Patch, VolumeMesh};
 use std::borrow::Cow;
 
 /// Additional information in a mesh file.
@@ -38,10 +39,14 @@ pub struct MeshFile {
     pub notes: MeshNotes,
 }
 
-/// Mesh from a format without notes.
+/// Mesh from a format without notes. Its blocks are regions if it has a label between two of them.
 impl From<VolumeMesh> for MeshFile {
-    fn from(volume: VolumeMesh) -> Self {
-        let labelled = !volume.boundary.is_empty();
-        Self { volume, labelled, notes: MeshNotes::default() }
+    fn from(mut volume: VolumeMesh) -> Self {
+        let mut notes = MeshNotes::default();
+        if has_interfaces(&volume) {
+            notes.regions = NamedRegion::all_numbered(volume.tet_block.iter().copied());
+            label_faces(&mut volume);
+        }
+        Self { labelled: !volume.boundary.is_empty(), volume, notes }
     }
 }

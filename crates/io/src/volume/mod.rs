@@ -16,6 +16,7 @@ mod openfoam;
 mod options;
 mod pvtu;
 mod read;
+mod regions;
 mod simvascular;
 #[cfg(test)]
 mod tests;
@@ -39,6 +40,7 @@ pub use npy::read_mesh_arrays;
 pub use options::GridOptions;
 pub use options::WriteOptions;
 pub use read::{read_mesh, read_mesh_from};
+pub use regions::{region_paths, write_regions};
 pub use vtu::write_boundary as write_poly_data;
 pub use vtu::{VtuPieces, VtuPiecesError};
 pub use write::{ensure_writable, write_mesh, write_mesh_to};

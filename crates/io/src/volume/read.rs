@@ -35,7 +35,7 @@ pub fn read_mesh_from(bytes: &[u8], format: MeshFormat) -> Result<MeshFile, Mesh
         MeshFormat::Vtu => Ok(vtu::read(bytes)?),
         // The file contains its version.
         MeshFormat::Msh | MeshFormat::Msh2 => Ok(msh::read(bytes)?),
-        MeshFormat::Medit => Ok(medit::read(bytes)?.into()),
+        MeshFormat::Medit => Ok(medit::read(bytes)?),
         MeshFormat::OpenFoam | MeshFormat::SimVascular => Err(MeshFault::NotRead),
         MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy => Err(MeshFault::SeveralFiles),
     }

@@ -13,6 +13,7 @@ use anastomesh_mesh::adjacency::boundary_faces;
 use anastomesh_mesh::check::check_tets;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::StopsAfter;
+use anastomesh_mesh::shapes::walled_channel;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
 use anastomesh_mesh::stacks::MixedMesh;
 use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
@@ -191,7 +192,7 @@ fn a_full_disk_is_named() {
     let (volume, _) = tube(6);
     let error = crate::file::write_whole(&path, |file| {
         let mut disk = Disk { bytes: Cursor::default(), room: 3000 };
-        let written = super::medit::write(&mut disk, &volume);
+        let written = super::medit::write(&mut disk, &volume, &MeshNotes::default());
         file.write_all(disk.bytes.get_ref())?;
         written
     });
@@ -231,6 +232,27 @@ fn every_format_reads_what_it_writes() {
         assert!(back.labelled, "{name}");
     }
     assert!(write_mesh_to(&mut Vec::new(), MeshFormat::Tetgen, &volume, &notes).is_err());
+}
+
+#[test]
+fn every_format_keeps_regions_and_interfaces() {
+    let folder = tempfile::tempdir().unwrap();
+    let (volume, regions) = walled_channel(1);
+    let notes = MeshNotes { regions, generator: "anastomesh".into(), ..MeshNotes::default() };
+    for name in ["a.vtu", "a.pvtu", "a.msh", "b.msh2", "a.mesh", "a.npyd"] {
+        let path = folder.path().join(name);
+        write_mesh(&path, &volume, &notes).unwrap();
+        let back = read_mesh(&path).unwrap();
+        assert_eq!(back.notes.regions, notes.regions, "{name}");
+        assert_eq!(back.volume, volume, "{name}");
+    }
+    // TetGen's files have numbers only.
+    let path = folder.path().join("a.ele");
+    write_mesh(&path, &volume, &notes).unwrap();
+    let back = read_mesh(&path).unwrap();
+    assert_eq!(back.notes.regions, [1, 2, 3].map(NamedRegion::numbered));
+    assert_eq!(back.volume.boundary_patch, volume.boundary_patch);
+    assert_eq!(VolumeMesh { patches: volume.patches.clone(), ..back.volume }, volume);
 }
 
 #[test]

@@ -210,7 +210,7 @@ pub(super) fn write_format(
         MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
         MeshFormat::Msh => msh::write(out, mesh, notes, None),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
-        MeshFormat::Medit => medit::write(out, mesh),
+        MeshFormat::Medit => medit::write(out, mesh, notes),
         MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))
         }

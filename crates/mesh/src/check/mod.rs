@@ -4,11 +4,15 @@
 //! tetrahedra on opposite sides. The boundary is a closed 2-manifold without self-intersection. No point is duplicate
 //! or unused. There is one component per component of the skeleton, with a boundary of the genus given by the
 //! skeleton's loops. Every terminal has its flat cap, and every other boundary face is wall.
+//!
+//! In a mesh with regions, the expectation applies to the region named `lumen`, and every region has a boundary like that
+//! of a mesh. Every face between two regions is labelled.
 
 mod cells;
 mod labels;
 mod nested;
 pub mod parts;
+mod regions;
 mod result;
 mod surface;
 mod surfaces;
@@ -18,12 +22,14 @@ pub mod text;
 mod tests;
 
 pub use result::{
-    CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict,
+    CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Outcome, RegionCounts,
+    Skipped, Verdict,
 };
 
 use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
 use super::quality::TetQuality;
-use super::{TetMesh, VolumeMesh};
+use super::{NamedRegion, TetMesh, VolumeMesh};
+use regions::RegionCheck;
 use surface::Boundary;
 
 /// Checks a labelled mesh.
@@ -48,7 +54,25 @@ use surface::Boundary;
 /// assert!(report.failed().any(|failed| failed.line == Line::PositiveTets));
 /// ```
 pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(None)
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions: &[] }.run(None)
+}
+
+/// Checks a labelled mesh with regions, which are the blocks of its tetrahedra. Without regions, as [`check_volume`].
+///
+/// ```
+/// use anastomesh_mesh::check::{Line, check_regions};
+/// use anastomesh_mesh::shapes::walled_channel;
+///
+/// let (mut volume, regions) = walled_channel(1);
+/// let report = check_regions(&volume, &regions, None);
+/// assert_eq!(report.failed().count(), 0);
+/// assert_eq!((report.regions[1].name.as_str(), report.regions[1].components), ("wall", 1));
+/// volume.tet_block[40] = 2;
+/// let report = check_regions(&volume, &regions, None);
+/// assert!(report.failed().any(|failed| failed.line == Line::InterfacesLabelled));
+/// ```
+pub fn check_regions(volume: &VolumeMesh, regions: &[NamedRegion], expectation: Option<&Expectation>) -> CheckReport {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions }.run(None)
 }
 
 /// As [`check_volume`], for callers that already have the result of [`tet_adjacency`] for this mesh.
@@ -57,7 +81,7 @@ pub fn check_volume_with(
     adjacency: TetAdjacency,
     expectation: Option<&Expectation>,
 ) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation }.run(Some(adjacency))
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions: &[] }.run(Some(adjacency))
 }
 
 /// Checks a mesh without labels; conditions on labels are not checked.
@@ -73,13 +97,15 @@ pub fn check_volume_with(
 /// assert_eq!((inverted.outcome, inverted.count), (Outcome::Fail, 1));
 /// ```
 pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh, volume: None, expectation }.run(None)
+    Check { mesh, volume: None, expectation, regions: &[] }.run(None)
 }
 
 struct Check<'a> {
     mesh: &'a TetMesh,
     volume: Option<&'a VolumeMesh>,
     expectation: Option<&'a Expectation>,
+    /// Empty for a mesh without regions.
+    regions: &'a [NamedRegion],
 }
 
 impl Check<'_> {
@@ -89,7 +115,9 @@ impl Check<'_> {
         let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
         // All other conditions require valid arrays.
         if let Some(line) = first_failure(&lines) {
-            let missing = Line::ALL.into_iter().filter(|l| lines.iter().all(|result| result.line != *l));
+            let of_regions = if self.regions.is_empty() { &[][..] } else { &Line::OF_REGIONS };
+            let all = Line::ALL.iter().chain(of_regions).copied();
+            let missing = all.filter(|l| lines.iter().all(|result| result.line != *l));
             let rest: Vec<LineResult> = missing.map(|l| LineResult::skipped(l, Skipped::Because(line))).collect();
             lines.extend(rest);
             return CheckReport::new(counts, lines, None, Vec::new());
@@ -109,7 +137,12 @@ impl Check<'_> {
         lines.push(cells::no_duplicate_points(mesh));
         counts.components = cells::component_count(&adjacency);
         counts.volume = cells::volume(mesh);
-        lines.push(result::components(self.expectation, counts.components));
+        let volume = self.volume.filter(|_| !self.regions.is_empty());
+        let regions = volume.map(|volume| RegionCheck::of(volume, self.regions, &adjacency));
+        lines.push(match &regions {
+            Some(regions) => regions.components(self.expectation),
+            None => result::components(self.expectation, counts.components),
+        });
         let faces = boundary_of(mesh, &adjacency);
         drop(adjacency);
         let boundary = Boundary::new(&mesh.points, &faces);
@@ -119,11 +152,20 @@ impl Check<'_> {
         let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
         let (line, intersections) = boundary.self_intersections(!fails(&lines, Line::BoundaryEdges));
         lines.push(line);
-        lines.push(self.loops(&boundary, open));
+        match &regions {
+            Some(regions) => lines.push(regions.loops(self.expectation)),
+            None => lines.push(self.loops(&boundary, open)),
+        }
         drop(boundary);
-        lines.extend(self.labels(&faces));
+        match &regions {
+            Some(regions) => lines.extend(regions.labels(&faces, self.expectation)),
+            None => lines.extend(self.labels(&faces)),
+        }
+        lines.extend(regions.iter().flat_map(|regions| regions.lines(self.expectation.is_some())));
         counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
-        CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections)
+        let sizes = regions.map_or_else(Vec::new, |regions| regions.counts());
+        let report = CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections);
+        CheckReport { regions: sizes, ..report }
     }
 
     /// Checks the genus of closed manifolds; `open` is the condition that makes the boundary no closed manifold.

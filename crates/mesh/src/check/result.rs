@@ -67,10 +67,29 @@ pub enum Line {
     CapArea,
     /// The triangles of every cap face in the direction of its normal.
     CapNormal,
+    /// Every tetrahedron belongs to a named region, and every named region has tetrahedra.
+    RegionsNamed,
+    /// The boundary of every region is a closed 2-manifold.
+    RegionBoundaries,
+    /// The boundary of no region intersects itself.
+    RegionIntersections,
+    /// Every labelled face inside the mesh lies between two regions: those that the name of its patch tells.
+    InterfaceSides,
+    /// Every face between two regions is labelled once, oriented out of the region with the smaller id.
+    InterfacesLabelled,
 }
 
 impl Line {
-    /// All conditions in order.
+    /// Conditions on regions, in order. A mesh without regions has none of them.
+    pub const OF_REGIONS: [Self; 5] = [
+        Self::RegionsNamed,
+        Self::RegionBoundaries,
+        Self::RegionIntersections,
+        Self::InterfaceSides,
+        Self::InterfacesLabelled,
+    ];
+
+    /// All conditions on a mesh without regions, in order.
     pub const ALL: [Self; 24] = [
         Self::NotEmpty,
         Self::FinitePoints,
@@ -130,6 +149,11 @@ impl Line {
             Self::CapCentred => "every cap is centred on its node (tolerance 0.1 r)",
             Self::CapArea => "every cap has the area πr² (tolerance 5 %)",
             Self::CapNormal => "every cap faces outwards",
+            Self::RegionsNamed => "every tetrahedron is in a named region, and no region is empty",
+            Self::RegionBoundaries => "the boundary of every region is closed and manifold",
+            Self::RegionIntersections => "the boundary of no region intersects itself",
+            Self::InterfaceSides => "every interface face lies between its two regions",
+            Self::InterfacesLabelled => "every face between two regions is labelled as interface",
         }
     }
 
@@ -185,6 +209,26 @@ impl Line {
                 "the areas of {} caps differ from πr² by more than 5 %",
             ],
             Self::CapNormal => ["1 cap does not face outwards", "{} caps do not face outwards"],
+            Self::RegionsNamed => [
+                "1 tetrahedron is in no named region, or a region is empty",
+                "{} tetrahedra are in no named region, or regions are empty",
+            ],
+            Self::RegionBoundaries => [
+                "the boundary of a region is open or not manifold at 1 place",
+                "the boundaries of regions are open or not manifold at {} places",
+            ],
+            Self::RegionIntersections => [
+                "the boundary of a region intersects itself at 1 place",
+                "the boundaries of regions intersect themselves at {} places",
+            ],
+            Self::InterfaceSides => [
+                "1 interface face does not lie between its two regions",
+                "{} interface faces do not lie between their two regions",
+            ],
+            Self::InterfacesLabelled => [
+                "1 face between two regions is not labelled as interface, or turned",
+                "{} faces between two regions are not labelled as interface, or turned",
+            ],
         }
     }
 }
@@ -200,6 +244,10 @@ pub enum Skipped {
     NoExpectation,
     /// No patch has cap data.
     NoCaps,
+    /// No region is named `lumen`.
+    NoLumen,
+    /// No interface face is labelled.
+    NoInterfaces,
     /// Meaningless while this condition fails.
     Because(Line),
 }
@@ -236,6 +284,8 @@ pub enum OffenderKind {
     Patch,
     /// A node of the network.
     Node,
+    /// A region of the mesh.
+    Region,
 }
 
 /// An entity that violates a condition.
@@ -312,6 +362,13 @@ impl Tally {
         }
     }
 
+    /// Counts the offenders of another condition, too.
+    pub(super) fn add_all(&mut self, other: LineResult) {
+        self.0.count += other.count;
+        let free = KEPT_OFFENDERS - self.0.offenders.len();
+        self.0.offenders.extend(other.offenders.into_iter().take(free));
+    }
+
     /// Compares two ascending lists; fails if they differ.
     pub(super) fn compare(&mut self, expected: Vec<u32>, found: Vec<u32>) {
         if expected != found {
@@ -357,6 +414,23 @@ pub struct Counts {
     pub volume: f64,
 }
 
+/// Sizes of a region.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionCounts {
+    /// Id of the region.
+    pub id: i32,
+    /// Name of the region.
+    pub name: String,
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Number of components (tetrahedra of the region connected by faces).
+    pub components: usize,
+    /// Number of faces on its boundary.
+    pub boundary_faces: usize,
+    /// Volume, in the cube of the mesh's unit.
+    pub volume: f64,
+}
+
 /// Verdict over all conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -385,6 +459,9 @@ pub struct CheckReport {
     pub verdict: Verdict,
     /// Sizes.
     pub counts: Counts,
+    /// Sizes of the regions, by id; empty if the mesh has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<RegionCounts>,
     /// One entry per condition, in order.
     pub lines: Vec<LineResult>,
     /// Shape of the tetrahedra; `None` if their points are unusable.
@@ -409,7 +486,7 @@ impl CheckReport {
         } else {
             Verdict::NoFaultFound
         };
-        Self { verdict, counts, lines, quality, intersections }
+        Self { verdict, counts, regions: Vec::new(), lines, quality, intersections }
     }
 
     /// True if every condition was checked and holds.

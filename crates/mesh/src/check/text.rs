@@ -1,7 +1,7 @@
 //! Text form of a check's result; its JSON form is `CheckReport` itself.
 
 use super::result::PRINTED_OFFENDERS;
-use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, Skipped, Verdict};
+use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, RegionCounts, Skipped, Verdict};
 use crate::units::{counted, digits, grouped, place, tetrahedra};
 use std::fmt::{self, Write as _};
 
@@ -12,6 +12,7 @@ const MAX_NAMED: usize = 3;
 impl fmt::Display for CheckReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         writeln!(out, "{}\n{}", conditions(self), sizes(self))?;
+        self.regions.iter().try_for_each(|region| writeln!(out, "region {}: {}", region.name, region_sizes(region)))?;
         if let Some(shape) = shape(self) {
             writeln!(out, "{shape}")?;
         }
@@ -30,6 +31,13 @@ pub fn sizes(check: &CheckReport) -> String {
     };
     let (caps, volume) = (counted(counts.caps, "cap"), digits(counts.volume));
     format!("{tets}{points}, {faces}, {caps}{components}, volume {volume}")
+}
+
+/// Sizes of a region.
+pub fn region_sizes(region: &RegionCounts) -> String {
+    let (components, faces) =
+        (counted(region.components, "component"), counted(region.boundary_faces, "boundary face"));
+    format!("{}, {components}, {faces}, volume {}", tetrahedra(region.tets), digits(region.volume))
 }
 
 /// Quality of the tetrahedra.
@@ -110,6 +118,8 @@ pub fn reason(why: Skipped) -> String {
         Skipped::NoLabels => "the boundary has no labels".into(),
         Skipped::NoExpectation => "the file does not contain the expected loops and terminals".into(),
         Skipped::NoCaps => "the labels do not identify the caps".into(),
+        Skipped::NoLumen => "no region is named 'lumen'".into(),
+        Skipped::NoInterfaces => "the file labels no interfaces".into(),
         Skipped::Because(line) => format!("the condition '{}' failed", line.statement()),
     }
 }
@@ -166,6 +176,7 @@ pub fn describe(offender: &Offender) -> String {
         OffenderKind::FacePair => "faces of points",
         OffenderKind::Patch => "patch",
         OffenderKind::Node => "node",
+        OffenderKind::Region => "region",
     };
     let separator = |i| if offender.kind == OffenderKind::FacePair && i == 3 { " and " } else { " " };
     let ids: String = offender.ids.iter().enumerate().map(|(i, id)| format!("{}{id}", separator(i))).collect();

@@ -35,6 +35,11 @@ impl Directions {
         Self { ways, normals }
     }
 
+    /// Minimum cosine between an inward direction at a vertex and the reversed normals around it.
+    pub fn steepness(&self, v: usize, way: &Vec3) -> f64 {
+        steepness(way, &self.normals[v])
+    }
+
     /// Averages directions with those of neighbours, within the minimum steepness, except at held vertices.
     pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
         for _ in 0..PASSES {

@@ -1,9 +1,15 @@
-//! Outward directions at the vertices of a wall, in the plane of the cap at its rims.
+//! Outward directions at the vertices of a wall. At rims they lie in the plane of the cap.
 
 use super::of_caps;
 use crate::layers::Directions;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+
+/// Minimum cosine between a direction in the plane of a cap and the normals of the wall. The wall behind a cap may rise
+/// above its plane, where a tip ends inside a fork; the ring is not flat there.
+const STEEP: f64 = 0.25;
+/// Shares of the wall's own direction that are added to one that is not steep enough.
+const TURNED: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Unit vectors that lead away from a wall, whose triangles are seen from inside. At the rim of a cap they lie in its plane.
 /// Also returns the normals of these planes, zero for other vertices.
@@ -15,11 +21,20 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
         let (centre, normal) = plane(&surface.points, &triangles);
         for v in triangles.into_iter().flatten().map(|v| v as usize) {
             is_held[v] = true;
-            planes[v] = normal;
-            let way = surface.points[v] - centre;
             // Vertices inside the cap have no triangle of the wall.
-            if ways.ways[v] != Vec3::zeros() {
-                ways.ways[v] = (way - normal * way.dot(&normal)).try_normalize(0.0).unwrap_or_default();
+            if ways.ways[v] == Vec3::zeros() {
+                continue;
+            }
+            let way = surface.points[v] - centre;
+            let flat = (way - normal * way.dot(&normal)).try_normalize(0.0).unwrap_or_default();
+            let is_steep = |way: &Vec3| ways.steepness(v, way) >= STEEP;
+            if is_steep(&flat) {
+                planes[v] = normal;
+                ways.ways[v] = flat;
+            } else {
+                let own = ways.ways[v];
+                let between = TURNED.into_iter().filter_map(|share| (flat + own * share).try_normalize(0.0));
+                ways.ways[v] = between.into_iter().find(is_steep).unwrap_or(own);
             }
         }
     }

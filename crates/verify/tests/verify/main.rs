@@ -3,3 +3,4 @@
 mod common;
 mod conditions;
 mod program;
+mod regions;

@@ -1,17 +1,20 @@
 //! Reader of Medit files.
 
 use super::error::MeditFault;
-use super::names::{TETRAHEDRA, TRIANGLES, VERTICES};
+use super::names::{PATCH, REGION, TETRAHEDRA, TRIANGLES, VERTICES};
 use crate::patches::usual_patches;
 use crate::text::{TextFault, Words, shown};
+use crate::volume::content::MeshFile;
+use anastomesh_mesh::region::{NamedRegion, label_faces};
 use anastomesh_mesh::{TetMesh, VolumeMesh};
 
 /// Reads a mesh from the bytes of a file. References of tetrahedra become blocks, those of triangles patches with
-/// default names. The blocks of boundary faces are not in the file and are 0. Other lists are skipped.
+/// default names, or regions and patches with the names in comments of this program. Without regions, the blocks of
+/// boundary faces are 0. Other lists are skipped.
 ///
 /// # Errors
 /// The bytes violate the format, are incomplete, or contain other cells.
-pub(in crate::volume) fn read(bytes: &[u8]) -> Result<VolumeMesh, MeditFault> {
+pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MeditFault> {
     let mut words = Words::new(bytes, true);
     let first = words.need("MeshVersionFormatted")?;
     if first != b"MeshVersionFormatted" {
@@ -35,7 +38,33 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<VolumeMesh, MeditFault> {
             _ => return Err(TextFault::Surplus { line: words.line() }.into()),
         }
     }
-    lists.into_volume()
+    let mut file = MeshFile::from(lists.into_volume()?);
+    let mut regions: Vec<NamedRegion> =
+        named(bytes, REGION).into_iter().map(|(id, name)| NamedRegion { id, name }).collect();
+    regions.sort_by_key(|region| region.id);
+    regions.dedup_by_key(|region| region.id);
+    if !regions.is_empty() {
+        file.notes.regions = regions;
+        let names = named(bytes, PATCH);
+        for patch in &mut file.volume.patches {
+            if let Some((_, name)) = names.iter().find(|(id, _)| *id == patch.id) {
+                patch.name.clone_from(name);
+            }
+        }
+        label_faces(&mut file.volume);
+    }
+    Ok(file)
+}
+
+/// Names in comments before the points, with their references.
+fn named(bytes: &[u8], comment: &str) -> Vec<(i32, String)> {
+    let lines = bytes.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    let head = lines.take_while(|line| !line.starts_with(VERTICES.as_bytes()));
+    let named = |line: &[u8]| {
+        let (id, name) = str::from_utf8(line.strip_prefix(comment.as_bytes())?).ok()?.split_once(' ')?;
+        Some((id.parse().ok()?, name.into()))
+    };
+    head.filter_map(named).collect()
 }
 
 /// Cells with their references, as numbered in the file.

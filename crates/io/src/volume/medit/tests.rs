@@ -25,7 +25,7 @@ fn what_is_written_is_read_but_for_the_blocks_of_the_boundary() {
 
 #[test]
 fn by_hand() {
-    let volume = read(MESH.as_bytes()).unwrap();
+    let volume = read(MESH.as_bytes()).unwrap().volume;
     assert_eq!((volume.mesh.tets, volume.tet_block), (vec![[0, 1, 2, 3]], vec![9]));
     assert_eq!((volume.boundary, volume.boundary_patch), (vec![[0, 2, 1], [0, 1, 3]], vec![1, 3]));
     let names: Vec<_> = volume.patches.iter().map(|p| (p.id, p.name.as_str())).collect();
@@ -49,7 +49,8 @@ proptest! {
     /// Damaged files are read or rejected; meshes from them are valid.
     #[test]
     fn damaged_files_make_no_panic(damage in damage()) {
-        if let Ok(volume) = read(&damage.done_to(MESH.as_bytes())) {
+        if let Ok(file) = read(&damage.done_to(MESH.as_bytes())) {
+            let volume = file.volume;
             let points = volume.mesh.points.len();
             prop_assert!(volume.mesh.tets.iter().flatten().all(|&v| (v as usize) < points));
             prop_assert!(volume.boundary.iter().flatten().all(|&v| (v as usize) < points));

@@ -12,10 +12,35 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Notes {
     generator: String,
     options: String,
-    /// Regions, by the ids of the blocks; empty if blocks are no regions.
-    regions: Vec<NamedRegion>,
+    regions: Regions,
     expected: Option<Expected>,
     patches: Vec<NamedPatch>,
+}
+
+/// Regions of the mesh.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+enum Regions {
+    /// Ids of blocks with their names; none if blocks are no regions.
+    Named(Vec<NamedRegion>),
+    /// True if blocks are regions without names (version 0.1).
+    Unnamed(bool),
+}
+
+impl Default for Regions {
+    fn default() -> Self {
+        Self::Named(Vec::new())
+    }
+}
+
+impl Regions {
+    fn named(self, blocks: &[i32]) -> Vec<NamedRegion> {
+        match self {
+            Self::Named(regions) => regions,
+            Self::Unnamed(true) => NamedRegion::all_numbered(blocks.iter().copied()),
+            Self::Unnamed(false) => Vec::new(),
+        }
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -52,13 +77,14 @@ impl Notes {
         Self {
             generator: notes.generator.clone(),
             options: notes.options.clone(),
-            regions: notes.regions.clone(),
+            regions: Regions::Named(notes.regions.clone()),
             expected,
             patches: patches.iter().map(named).collect(),
         }
     }
 
-    pub(super) fn into_parts(self) -> (MeshNotes, Vec<Patch>) {
+    /// Returns the notes and patches of a mesh with these blocks.
+    pub(super) fn into_parts(self, blocks: &[i32]) -> (MeshNotes, Vec<Patch>) {
         let expectation = self.expected.map(|Expected { loops, terminals }| Expectation { loops, terminals });
         let cap = |disc: Disc| Cap {
             node: disc.node,
@@ -71,6 +97,6 @@ impl Notes {
         patches.sort_by_key(|patch| patch.id);
         patches.dedup_by_key(|patch| patch.id);
         let Self { generator, options, regions, .. } = self;
-        (MeshNotes { expectation, generator, options, regions, flow: None }, patches)
+        (MeshNotes { expectation, generator, options, regions: regions.named(blocks), flow: None }, patches)
     }
 }

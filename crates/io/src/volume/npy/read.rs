@@ -37,13 +37,15 @@ fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
     let boundary_block = arrays.labels(TRIANGLE_BLOCKS, of_faces)?;
     let notes = arrays.other(NOTES).map(serde_json::from_slice::<Notes>).transpose();
     let notes = notes.map_err(|e| NpyFault::Json { reason: e.to_string() }.of(NOTES))?;
-    let (notes, mut patches) = notes.map_or_else(|| (MeshNotes::default(), Vec::new()), Notes::into_parts);
+    let tet_block = tet_block.unwrap_or_else(|| vec![0; tets.len()]);
+    let (notes, mut patches) =
+        notes.map_or_else(|| (MeshNotes::default(), Vec::new()), |notes| notes.into_parts(&tet_block));
     let boundary_patch = boundary_patch.unwrap_or_else(|| vec![0; boundary.len()]);
     if patches.is_empty() {
         patches = usual_patches(&boundary_patch);
     }
     let volume = VolumeMesh {
-        tet_block: tet_block.unwrap_or_else(|| vec![0; tets.len()]),
+        tet_block,
         boundary_block: boundary_block.unwrap_or_else(|| vec![0; boundary.len()]),
         mesh: TetMesh { points, tets },
         boundary,

@@ -1,8 +1,9 @@
 //! `OpenFOAM` cases: a folder with the mesh in `constant/polyMesh` and all dictionaries for `simpleFoam`, or for
-//! `pimpleFoam` if the flow has a time.
+//! `pimpleFoam` if the flow has a time. Meshes with regions have zones, and dictionaries for `laplacianFoam`.
 
 mod boundary;
 mod case;
+mod diffusion;
 mod fields;
 mod figures;
 mod head;
@@ -17,6 +18,9 @@ mod rules;
 mod system;
 #[cfg(test)]
 mod tests;
+mod zones;
+#[cfg(test)]
+mod zones_tests;
 
 use super::content::MeshNotes;
 use crate::file::AtomicFolder;
@@ -69,11 +73,13 @@ fn is_ours(name: &str) -> bool {
     name == FOR_PARAVIEW
         || poly_mesh::FILES.contains(&name)
         || TEXTS.iter().any(|(text, _)| *text == name)
+        || [zones::CELL_ZONES, zones::FACE_ZONES].contains(&name)
+        || diffusion::FILES.contains(&name)
         || in_folder(inflow::WAVEFORMS)
         || in_folder(inflow::VELOCITIES)
 }
 
-/// Writes a case atomically. Solver results in an existing folder are an error. `remark` receives each reason why the
+/// Writes a case atomically. A mesh with regions becomes cell zones and a case of diffusion ([`zones`]). Solver results in an existing folder are an error. `remark` receives each reason why the
 /// case is not expected to converge.
 ///
 /// Tetrahedra are read twice, points twice, the boundary three times. A mesh with layers is read once more. Memory holds
@@ -90,6 +96,11 @@ pub(super) fn write(
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
+    if !notes.regions.is_empty() {
+        zones::write(&folder, mesh, notes, remark, progress)?;
+        folder.put(FOR_PARAVIEW, b"")?;
+        return folder.commit();
+    }
     let cells = Cells::of(mesh)?;
     let cells = cells.as_ref();
     let faces = Faces::of(mesh)?;

@@ -6,7 +6,7 @@ use super::plan::Plan;
 use crate::file::{Asked, AtomicFile, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
-use crate::volume::vtu::{GLOBAL_IDS, Grid};
+use crate::volume::vtu::{GLOBAL_IDS, Grid, REGION};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::bits::Bits;
@@ -69,7 +69,7 @@ pub(in crate::volume) fn write(
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder, pieces)?;
+    write_index(&mut index, plan.ends.len(), &folder, !notes.regions.is_empty(), pieces)?;
     folder.commit(index, path)
 }
 
@@ -80,11 +80,18 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: Pieces) -> io::Result<()> {
+fn write_index(
+    out: &mut impl Write,
+    pieces: usize,
+    folder: &PieceFolder,
+    has_regions: bool,
+    how: Pieces,
+) -> io::Result<()> {
     let grid = how.grid;
     let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
     let float = if grid.float32 { "Float32" } else { "Float64" };
     let columns = how.values.map_or(&[][..], Beside::columns);
+    let region = if has_regions { format!("<PDataArray type=\"Int32\" Name=\"{REGION}\"/>\n") } else { String::new() };
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
@@ -92,7 +99,7 @@ fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: P
          <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
          </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
-         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{region}{}</PCellData>",
         announced(columns, true),
         announced(columns, false)
     )?;
@@ -265,8 +272,15 @@ impl PieceWriter<'_> {
         if notes.is_some() {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
-        let grid =
-            Grid { mesh: &piece.volume, notes, global_ids: Some(&piece.ids), options: self.grid, values: self.values };
+        let grid = Grid {
+            mesh: &piece.volume,
+            notes,
+            has_regions: !self.notes.regions.is_empty(),
+            global_ids: Some(&piece.ids),
+            solver_ids: None,
+            options: self.grid,
+            values: self.values,
+        };
         write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }
 }

@@ -26,5 +26,8 @@ pub(super) fn is_ours(name: &str) -> bool {
         patch.is_some_and(|patch| !patch.contains('/'))
     };
     let surface = |name: &str| name.strip_prefix("mesh-surfaces/").and_then(|own| own.strip_suffix(".vtp")).is_some();
-    [MESH, EXTERIOR, WALLS, SOLVER].contains(&name) || surface(name) || inflow(name)
+    let of_mesh = |name: &str| [MESH, EXTERIOR, WALLS].contains(&name) || surface(name);
+    // A region has a folder of its own.
+    let of_region = name.split_once('/').is_some_and(|(_, rest)| of_mesh(rest));
+    name == SOLVER || of_mesh(name) || of_region || inflow(name)
 }

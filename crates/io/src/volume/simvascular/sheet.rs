@@ -8,6 +8,9 @@ use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use std::io;
 
+/// Selects faces.
+pub(super) type Chosen<'a> = &'a (dyn Fn(&OuterFace) -> bool + Sync);
+
 /// Callback for items in batches.
 pub(super) type Take<'a, T> = &'a mut dyn FnMut(&[T]) -> io::Result<()>;
 
@@ -29,14 +32,14 @@ pub(super) trait Sheet: Sync {
 pub(super) struct WideSheet<'a> {
     pub(super) mesh: &'a dyn MeshSource,
     pub(super) spool: &'a Spool,
-    pub(super) has: fn(&OuterFace) -> bool,
+    pub(super) has: Chosen<'a>,
     pub(super) used: &'a Bits,
     pub(super) ranks: Ranks<'a>,
     pub(super) faces: usize,
 }
 
 /// Points of the selected faces, and number of these faces.
-pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: fn(&OuterFace) -> bool) -> io::Result<(Bits, usize)> {
+pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: Chosen) -> io::Result<(Bits, usize)> {
     let (mut used, mut count) = (Bits::new(mesh.counts().points), 0);
     spool.each(|faces| {
         for face in faces.iter().filter(|face| has(face)) {
@@ -74,7 +77,7 @@ impl Sheet for WideSheet<'_> {
     }
 
     fn each_faces(&self, each: Take<OuterFace>) -> io::Result<()> {
-        self.spool.each(|faces| each(&faces.iter().copied().filter(self.has).collect::<Vec<_>>()))
+        self.spool.each(|faces| each(&faces.iter().copied().filter(|face| (self.has)(face)).collect::<Vec<_>>()))
     }
 
     fn own_number(&self, id: u32) -> u32 {

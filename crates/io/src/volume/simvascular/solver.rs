@@ -33,7 +33,7 @@ pub(super) fn text(patches: &[Patch], flow: &Flow, steps: &Steps) -> String {
     )
 }
 
-fn general(steps: &Steps) -> String {
+pub(super) fn general(steps: &Steps) -> String {
     let Steps { step, count, increment, restart, why, .. } = steps;
     format!(
         "<!-- Run inside this folder: svmultiphysics solver.xml. {why}. -->\n<GeneralSimulationParameters>\n  \
@@ -47,7 +47,7 @@ fn general(steps: &Steps) -> String {
 }
 
 /// Comment on resistances with a pressure beyond them, which the solver does not have.
-fn remark(patches: &[Patch], flow: &Flow) -> String {
+pub(super) fn remark(patches: &[Patch], flow: &Flow) -> String {
     let mut outlets = patches.iter().filter(|patch| patch.is_outlet()).map(|patch| flow.at(patch).outlet);
     let beyond = |outlet| match outlet {
         OutletModel::Resistance { distal_pressure, .. } => Some(distal_pressure).filter(|pressure| *pressure != 0.0),
@@ -61,7 +61,7 @@ fn remark(patches: &[Patch], flow: &Flow) -> String {
     })
 }
 
-fn condition(patch: &Patch, flow: &Flow) -> String {
+pub(super) fn condition(patch: &Patch, flow: &Flow) -> String {
     let at = flow.at(patch);
     match Role::of(patch) {
         Role::Inlet => inlet(&plain(&patch.name), &at, flow),

@@ -1,7 +1,10 @@
+use super::layout::{EXTERIOR, MESH};
+use super::sheet::{Sheet, WideSheet, used};
 use super::*;
 use crate::volume::fixtures::labelled_tube;
 use crate::volume::in_pieces::InPieces;
 use crate::volume::{read_mesh, write_mesh};
+use anastomesh_mesh::faces::OuterFace;
 use std::fs;
 
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
@@ -57,13 +60,13 @@ fn a_cap_has_the_points_of_its_faces_by_their_numbers_in_the_mesh() {
     let (volume, _) = labelled_tube(3);
     let folder = tempfile::tempdir().unwrap();
     let spool = Spool::of(&volume, &folder.path().join("x"), &()).unwrap();
-    let faces = &caps(&spool).unwrap()[&3];
+    let faces = &caps(&spool, |patch| patch != WALL).unwrap()[&3];
     let cap = CapSheet::new(&volume, faces).unwrap();
-    let (used, count) = used(&volume, &spool, |face| face.patch == 3).unwrap();
+    let (used, count) = used(&volume, &spool, &|face: &OuterFace| face.patch == 3).unwrap();
     let wide = WideSheet {
         mesh: &volume,
         spool: &spool,
-        has: |f| f.patch == 3,
+        has: &|f: &OuterFace| f.patch == 3,
         used: &used,
         ranks: used.ranks(),
         faces: count,
@@ -71,7 +74,7 @@ fn a_cap_has_the_points_of_its_faces_by_their_numbers_in_the_mesh() {
     // Held and multi-pass surfaces are equal.
     let bytes = |sheet: &dyn Sheet| {
         let mut bytes = Cursor::new(Vec::new());
-        write_sheet(&mut bytes, sheet).unwrap();
+        write_sheet(&mut bytes, sheet, &Numbers::default()).unwrap();
         bytes.into_inner()
     };
     assert!(bytes(&cap) == bytes(&wide));

@@ -1,6 +1,6 @@
 //! Arrays of an unstructured grid and the sources of their values.
 
-use super::names::{GLOBAL_IDS, VTK_TETRA, VTK_TRIANGLE, field};
+use super::names::{ELEMENT_ID, GLOBAL_IDS, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
 use crate::volume::content::MeshNotes;
 use crate::vtk_xml::Blocks;
 use anastomesh_mesh::Patch;
@@ -59,22 +59,23 @@ impl<'a> ArrayWriter<'a> {
     }
 }
 
-/// Points, cells and labels of a mesh.
-pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool) -> Vec<ArrayWriter<'_>> {
+/// Points, cells and labels of a mesh. Blocks are also regions if `has_regions`.
+pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool, has_regions: bool) -> Vec<ArrayWriter<'_>> {
     let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
     all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
-    all.extend([patch_array(mesh), block_array(mesh)]);
+    all.extend([patch_array(mesh), block_array("block", mesh)]);
+    all.extend(has_regions.then(|| block_array(REGION, mesh)));
     all
 }
 
 /// Maximum patch id with a name in the file: the name list has an entry for every smaller number.
 pub(super) const LARGEST_NAMED: i32 = 1 << 16;
 
-/// Names by patch id: `lumen` for the inside (0), empty for unused ids.
-fn patch_names(patches: &[Patch]) -> Vec<String> {
+/// Names by patch id: that of the inside for 0, empty for unused ids.
+fn patch_names(patches: &[Patch], inside: &str) -> Vec<String> {
     let largest = patches.iter().map(|p| p.id).filter(|&id| id <= LARGEST_NAMED).max().unwrap_or(0).max(0) as usize;
     let mut names = vec![String::new(); largest + 1];
-    names[0] = "lumen".into();
+    names[0] = inside.into();
     for patch in patches {
         if patch.id > 0
             && let Some(name) = names.get_mut(patch.id as usize)
@@ -88,7 +89,8 @@ fn patch_names(patches: &[Patch]) -> Vec<String> {
 /// Field data of a mesh.
 pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<ArrayWriter<'a>> {
     let caps: Vec<_> = patches.iter().filter_map(|p| p.cap.map(|cap| (p.id, cap))).collect();
-    let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches))];
+    let inside = if notes.regions.is_empty() { "lumen" } else { "interior" };
+    let mut arrays = vec![strings(field::PATCH_NAMES, &patch_names(patches, inside))];
     if !caps.is_empty() {
         let vectors = |f: fn(&anastomesh_mesh::Cap) -> [f64; 3]| caps.iter().flat_map(|(_, cap)| f(cap)).collect();
         arrays.push(ints(field::CAP_PATCH, caps.iter().map(|&(id, _)| i64::from(id)).collect()));
@@ -100,6 +102,11 @@ pub(super) fn of_fields<'a>(patches: &[Patch], notes: &MeshNotes) -> Vec<ArrayWr
     if let Some(expected) = &notes.expectation {
         arrays.push(ints(field::LOOPS, expected.loops.iter().map(|&n| i64::from(n)).collect()));
         arrays.push(ints(field::TERMINALS, expected.terminals.iter().map(|&n| i64::from(n)).collect()));
+    }
+    if !notes.regions.is_empty() {
+        arrays.push(ints(field::REGION_IDS, notes.regions.iter().map(|region| i64::from(region.id)).collect()));
+        let names: Vec<String> = notes.regions.iter().map(|region| region.name.clone()).collect();
+        arrays.push(strings(field::REGION_NAMES, &names));
     }
     for (name, text) in [(field::GENERATOR, &notes.generator), (field::OPTIONS, &notes.options)] {
         if !text.is_empty() {
@@ -137,6 +144,20 @@ fn floats<'a>(name: &'static str, components: usize, values: Vec<f64>) -> ArrayW
 pub(super) fn of_ids(ids: &[u32]) -> ArrayWriter<'_> {
     let fill = |out: &mut Blocks| out.push(ids.len(), |i| u64::from(ids[i]).to_le_bytes());
     ArrayWriter::new(ArrayLocation::PointData, GLOBAL_IDS, INT64, ids.len(), fill)
+}
+
+/// Numbers from 1 of points and cells in the whole mesh, given from 0.
+pub(super) fn of_solver<'a>(points: &'a [u32], cells: [&'a [u32]; 2]) -> [ArrayWriter<'a>; 2] {
+    let from_one = |place, name, lists: Vec<&'a [u32]>| {
+        let count = lists.iter().map(|list| list.len()).sum();
+        ArrayWriter::new(place, name, INT32, count, move |out| {
+            lists.iter().try_for_each(|list| out.push(list.len(), |i| (list[i] + 1).to_le_bytes()))
+        })
+    };
+    [
+        from_one(ArrayLocation::PointData, NODE_ID, vec![points]),
+        from_one(ArrayLocation::CellData, ELEMENT_ID, cells.to_vec()),
+    ]
 }
 
 /// Callback for points in batches.
@@ -230,8 +251,8 @@ pub(super) fn types_array<'a>(types: Vec<u8>) -> ArrayWriter<'a> {
     })
 }
 
-/// Points, triangles and labels of a boundary.
-pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec<ArrayWriter<'a>> {
+/// Points, triangles and labels of a boundary. Blocks are also regions if `has_regions`.
+pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool, has_regions: bool) -> Vec<ArrayWriter<'a>> {
     let counts = surface.counts();
     let (width, faces) = (Width::of(counts), counts.boundary);
     let corners = move |out: &mut Blocks| {
@@ -242,15 +263,20 @@ pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool) -> Vec
     };
     let offsets = move |out: &mut Blocks| width.push(out, faces, |face| 3 * (face as u64 + 1));
     let patch = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.patches));
-    let block = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.blocks));
+    let block = |name| {
+        let fill = move |out: &mut Blocks| surface.each_faces(|piece| out.push_ints(&piece.blocks));
+        ArrayWriter::new(ArrayLocation::CellData, name, INT32, faces, fill)
+    };
     let corners = ArrayWriter::new(ArrayLocation::Polys, "connectivity", width.kind(), 3 * faces, corners);
-    vec![
+    let mut all = vec![
         points_array(counts.points, float32, |each| surface.each_points(each)),
         ArrayWriter { shrinks: width == Width::Int64, ..corners },
         ArrayWriter::new(ArrayLocation::Polys, "offsets", width.kind(), faces, offsets),
         ArrayWriter::new(ArrayLocation::CellData, "patch", INT32, faces, patch),
-        ArrayWriter::new(ArrayLocation::CellData, "block", INT32, faces, block),
-    ]
+        block("block"),
+    ];
+    all.extend(has_regions.then(|| block(REGION)));
+    all
 }
 
 /// Additional values at points and in cells. Cell values derive from the corners.
@@ -288,9 +314,9 @@ fn patch_array(mesh: &dyn MeshSource) -> ArrayWriter<'_> {
     })
 }
 
-fn block_array(mesh: &dyn MeshSource) -> ArrayWriter<'_> {
+fn block_array<'a>(name: &'static str, mesh: &'a dyn MeshSource) -> ArrayWriter<'a> {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
-    ArrayWriter::new(ArrayLocation::CellData, "block", INT32, tets + boundary, |out| {
+    ArrayWriter::new(ArrayLocation::CellData, name, INT32, tets + boundary, |out| {
         mesh.each_tet_labels(|piece| push_known(out, &piece.blocks, piece.count))?;
         mesh.each_face_labels(|piece| push_known(out, &piece.blocks, piece.count))
     })

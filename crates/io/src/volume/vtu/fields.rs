@@ -7,7 +7,7 @@ use crate::volume::content::MeshNotes;
 use crate::vtk_xml::{ElementId, Values, VtkXml};
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::{Cap, Patch};
+use anastomesh_mesh::{Cap, NamedRegion, Patch};
 use rustc_hash::FxHashMap;
 
 /// True if a byte array contains text, by its name.
@@ -67,9 +67,24 @@ impl Fields {
             expectation,
             generator: self.text(field::GENERATOR),
             options: self.text(field::OPTIONS),
-            regions: Vec::new(),
+            regions: self.regions(),
             flow: None,
         }
+    }
+
+    /// Regions, ascending; those without a name have the default name.
+    fn regions(&self) -> Vec<NamedRegion> {
+        let ids = self.ints.get(field::REGION_IDS).map_or(&[][..], Vec::as_slice);
+        let names = self.strings.get(field::REGION_NAMES).map_or(&[][..], Vec::as_slice);
+        let name = |i: usize| names.get(i).filter(|name| !name.is_empty());
+        let region = |(i, &id): (usize, &i64)| {
+            let id = i32::try_from(id).ok()?;
+            Some(name(i).map_or_else(|| NamedRegion::numbered(id), |name| NamedRegion::new(id, name)))
+        };
+        let mut regions: Vec<NamedRegion> = ids.iter().enumerate().filter_map(region).collect();
+        regions.sort_by_key(|region| region.id);
+        regions.dedup_by_key(|region| region.id);
+        regions
     }
 
     /// Patches with a name or a cap (names end at some id). If none has a name, the occurring ones with default names.

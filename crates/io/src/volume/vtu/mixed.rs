@@ -2,7 +2,7 @@
 
 use super::arrays::{self, ArrayLocation, ArrayWriter, INT32};
 use super::file::File;
-use super::names::{VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
+use super::names::{REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
 use anastomesh_mesh::VolumeMesh;
@@ -58,6 +58,9 @@ pub(in crate::volume) fn write_mixed(
     arrays.push(arrays::types_array(types));
     arrays.push(ints(ArrayLocation::CellData, "patch", labels(|_| 0, |face| face.patch)));
     arrays.push(ints(ArrayLocation::CellData, "block", labels(|cell| cell.block, |face| face.block)));
+    if !notes.regions.is_empty() {
+        arrays.push(ints(ArrayLocation::CellData, REGION, labels(|cell| cell.block, |face| face.block)));
+    }
     arrays.push(ints(ArrayLocation::CellData, "layer", labels(|cell| cell.layer, |_| 0)));
     File { kind: "UnstructuredGrid", counts, arrays, raw: options.raw }.write(out)
 }

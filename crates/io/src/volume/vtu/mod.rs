@@ -2,7 +2,8 @@
 //! alone are poly data (`.vtp`).
 //!
 //! Tetrahedra precede the boundary triangles. The `Int32` cell arrays `patch` and `block` hold the labels (the patch of
-//! a tetrahedron is 0). Field data contain the patch names (`patch_names`, indexed by id) and the data for later
+//! a tetrahedron is 0). In a mesh with regions, `region` holds the same as `block`, and `region_ids` and `region_names` the
+//! regions. Field data contain the patch names (`patch_names`, indexed by id) and the data for later
 //! checks: caps, loops of each component, terminals.
 
 pub(super) mod arrays;
@@ -21,8 +22,8 @@ mod write;
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
 pub(super) use mixed::write_mixed;
-pub(super) use names::GLOBAL_IDS;
+pub(super) use names::{ELEMENT_ID, GLOBAL_IDS, NODE_ID, REGION};
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub use write::write_boundary;
-pub(super) use write::{Grid, Recounted, write};
+pub(super) use write::{Grid, Recounted, SolverIds, write};

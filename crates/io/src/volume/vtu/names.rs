@@ -17,9 +17,18 @@ pub(super) mod field {
     pub const CAP_RADIUS: &str = "cap_radius";
     pub const LOOPS: &str = "expected_loops";
     pub const TERMINALS: &str = "expected_terminals";
+    pub const REGION_IDS: &str = "region_ids";
+    pub const REGION_NAMES: &str = "region_names";
     pub const GENERATOR: &str = "generator";
     pub const OPTIONS: &str = "options";
 }
+
+/// Names of the arrays by which `svMultiPhysics` and other solvers number points and cells, from 1.
+pub(in crate::volume) const NODE_ID: &str = "GlobalNodeID";
+pub(in crate::volume) const ELEMENT_ID: &str = "GlobalElementID";
+
+/// Name of the cell array with the region of each cell.
+pub(in crate::volume) const REGION: &str = "region";
 
 /// Name of the point array with the number of each point in the whole mesh.
 pub(in crate::volume) const GLOBAL_IDS: &str = "GlobalPointIds";

@@ -2,7 +2,7 @@
 
 use super::error::VtuFault;
 use super::fields::Fields;
-use super::names::{GLOBAL_IDS, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
+use super::names::{GLOBAL_IDS, REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
 use crate::volume::content::MeshFile;
 use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::VolumeMesh;
@@ -95,7 +95,8 @@ impl GridReader {
             None => None,
         };
         let array = |name| data.map_or(Ok(None), |data| int_array(xml, data, name, count));
-        let (blocks, ghosts) = (array("block")?, array("vtkGhostType")?);
+        let blocks = array(REGION)?.map_or_else(|| array("block"), |regions| Ok(Some(regions)))?;
+        let ghosts = array("vtkGhostType")?;
         self.add_cells(&cells, first_point as i64, &CellData { labels, blocks, ghosts })
     }
 

@@ -22,7 +22,8 @@ pub(in crate::volume) fn write(
     options: GridOptions,
     values: Option<&dyn Beside>,
 ) -> io::Result<()> {
-    Grid { mesh, notes: Some(notes), global_ids: None, options, values }.write(out)
+    let has_regions = !notes.regions.is_empty();
+    Grid { mesh, notes: Some(notes), has_regions, global_ids: None, solver_ids: None, options, values }.write(out)
 }
 
 /// Contents of a file.
@@ -30,11 +31,30 @@ pub(in crate::volume) struct Grid<'a> {
     pub mesh: &'a dyn MeshSource,
     /// Field data; `None` for a piece without them.
     pub notes: Option<&'a MeshNotes>,
+    /// True if blocks are regions.
+    pub has_regions: bool,
     /// For a piece of a mesh: number of each point in the whole mesh.
     pub global_ids: Option<&'a [u32]>,
+    /// For a region of a mesh: numbers in the whole mesh, by which solvers match regions.
+    pub solver_ids: Option<SolverIds<'a>>,
     pub options: GridOptions,
     /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
+}
+
+/// Numbers in the whole mesh of the parts of a region.
+pub(in crate::volume) struct SolverIds<'a> {
+    pub points: &'a [u32],
+    pub tets: &'a [u32],
+    /// Tetrahedron under each boundary face.
+    pub faces: &'a [u32],
+}
+
+impl<'a> SolverIds<'a> {
+    /// Tetrahedron of each cell.
+    fn cells(&self, options: GridOptions) -> [&'a [u32]; 2] {
+        [self.tets, if options.tets_alone { &[] } else { self.faces }]
+    }
 }
 
 impl Grid<'_> {
@@ -44,7 +64,8 @@ impl Grid<'_> {
         let mesh: &dyn MeshSource = if self.options.tets_alone { &alone } else { self.mesh };
         let mut all = self.notes.map_or_else(Vec::new, |notes| arrays::of_fields(mesh.patches(), notes));
         all.extend(self.global_ids.map(arrays::of_ids));
-        all.extend(arrays::of_mesh(mesh, self.options.float32));
+        all.extend(self.solver_ids.iter().flat_map(|ids| arrays::of_solver(ids.points, ids.cells(self.options))));
+        all.extend(arrays::of_mesh(mesh, self.options.float32, self.has_regions));
         all.extend(self.values.into_iter().flat_map(|values| arrays::of_values(mesh, values)));
         let SourceCounts { points, tets, boundary } = mesh.counts();
         let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{}\"", tets + boundary);
@@ -63,7 +84,7 @@ pub fn write_boundary(
     options: GridOptions,
 ) -> io::Result<()> {
     let mut all = arrays::of_fields(surface.mesh().patches(), notes);
-    all.extend(arrays::of_surface(surface, options.float32));
+    all.extend(arrays::of_surface(surface, options.float32, !notes.regions.is_empty()));
     let SourceCounts { points, boundary, .. } = surface.counts();
     let counts = format!("NumberOfPoints=\"{points}\" NumberOfPolys=\"{boundary}\"");
     File { kind: "PolyData", counts, arrays: all, raw: options.raw }.write(out)

@@ -1,0 +1,84 @@
+//! Case of steady diffusion out of the lumen, such as that of oxygen, for `laplacianFoam`.
+
+use super::boundary::{Boundary, FoamPatch};
+use super::head;
+use super::rules::Settings;
+use std::fmt::Write;
+
+pub(super) const FILES: [&str; 6] = [
+    "0/T",
+    "constant/transportProperties",
+    "system/controlDict",
+    "system/fvOptions",
+    "system/fvSchemes",
+    "system/fvSolution",
+];
+
+/// Diffusivity of oxygen in tissue at 37 °C, in m²/s (Bentley, Meng and Pittman 1993).
+const DIFFUSIVITY: f64 = 2.41e-9;
+
+/// Maximum number of corrections of non-orthogonality.
+const CORRECTIONS: u32 = 20;
+
+/// Contents of the files. The lumen has concentration 1, outer surfaces 0; nothing passes ends of vessels and walls.
+pub(super) fn texts(boundary: &Boundary, settings: &Settings, has_lumen: bool) -> [(&'static str, String); 6] {
+    let texts =
+        [concentration(boundary), transport(), control(), options(has_lumen), schemes(settings), solution(settings)];
+    let mut texts = texts.into_iter();
+    FILES.map(|name| (name, texts.next().unwrap_or_default()))
+}
+
+/// True if nothing passes through a patch: the flat end of a vessel, of its wall, or of an annulus.
+fn is_end(patch: &FoamPatch) -> bool {
+    ["inlet", "outlet", "ring"].iter().any(|kind| patch.name.starts_with(kind))
+}
+
+fn concentration(boundary: &Boundary) -> String {
+    let mut text = head::text("volScalarField", "0/T");
+    text += "dimensions      [0 0 0 0 0 0 0];\ninternalField   uniform 0;\n\nboundaryField\n{\n";
+    for patch in &boundary.patches {
+        let entry = if is_end(patch) { "type zeroGradient;" } else { "type fixedValue;\n        value uniform 0;" };
+        let _ = writeln!(text, "    {}\n    {{\n        {entry}\n    }}", patch.name);
+    }
+    text + "}\n"
+}
+
+fn transport() -> String {
+    head::text("dictionary", "constant/transportProperties")
+        + &format!("// Oxygen in tissue, in m2/s.\nDT              [0 2 -1 0 0 0 0] {DIFFUSIVITY:e};\n")
+}
+
+fn control() -> String {
+    head::text("dictionary", "system/controlDict")
+        + "application     laplacianFoam;\nstartFrom       latestTime;\nstartTime       0;\nstopAt          endTime;\nendTime         \
+           1;\ndeltaT          1;\nwriteControl    timeStep;\nwriteInterval   1;\npurgeWrite      0;\nwriteFormat     \
+           binary;\nwritePrecision  10;\nwriteCompression off;\ntimeFormat      general;\ntimePrecision   8;\n"
+}
+
+/// Fixes the concentration in the lumen.
+fn options(has_lumen: bool) -> String {
+    let lumen = "lumen\n{\n    type            scalarFixedValueConstraint;\n    active          yes;\n    \
+                 scalarFixedValueConstraintCoeffs\n    {\n        selectionMode   cellZone;\n        cellZone        lumen;\n        \
+                 fieldValues     { T 1; }\n    }\n}\n";
+    head::text("dictionary", "system/fvOptions") + if has_lumen { lumen } else { "" }
+}
+
+fn schemes(settings: &Settings) -> String {
+    let Settings { correction, reason, .. } = settings;
+    head::text("dictionary", "system/fvSchemes")
+        + &format!(
+            "{reason}ddtSchemes           {{ default steadyState; }}\ngradSchemes          {{ default Gauss linear; \
+             }}\ndivSchemes           {{ default none; }}\n{}\nlaplacianSchemes     {{ default Gauss linear {correction}; \
+             }}\ninterpolationSchemes {{ default linear; }}\nsnGradSchemes        {{ default {correction}; }}\n",
+            settings.why_correction()
+        )
+}
+
+fn solution(settings: &Settings) -> String {
+    head::text("dictionary", "system/fvSolution")
+        + &format!(
+            "{}solvers\n{{\n    T\n    {{\n        solver          PCG;\n        preconditioner  DIC;\n        tolerance       \
+             1e-9;\n        relTol          0.01;\n    }}\n}}\n\nSIMPLE\n{{\n    nNonOrthogonalCorrectors {CORRECTIONS};\n}}\n",
+            settings.reason
+        )
+}
