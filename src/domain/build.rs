@@ -5,6 +5,7 @@ use super::error::DomainError;
 use super::organ::{check_organ, organ};
 use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan, TissueShape};
 use super::surface::LumenSurface;
+use super::unfold::unfold;
 use crate::fidelity::Tubes;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -38,6 +39,8 @@ pub struct ShellsReport {
     pub complete: usize,
     /// Points with less than half of it.
     pub thin: usize,
+    /// Points of the wall that were moved, because it was folded there.
+    pub moved: usize,
     /// Least share, and its place; `None` if all are complete.
     pub thinnest: Option<(f64, [f64; 3])>,
 }
@@ -56,13 +59,15 @@ impl Domain {
         progress: &dyn Progress,
     ) -> Result<Self, DomainError> {
         plan.validate()?;
-        let surface = LumenSurface::of(&lumen);
+        let mut lumen = lumen;
+        let mut surface = LumenSurface::of(&lumen);
+        let moved = if plan.shells.is_empty() { 0 } else { unfold(&mut lumen.mesh, &mut surface) };
         let sites = sites(&surface.surface, network);
         let outer = |site: &Site| site.radius + plan.shells.iter().map(|shell| shell.thickness.at(site)).sum::<f64>();
         let largest = sites.iter().map(outer).fold(0.0, f64::max);
         let around = plan.tissue.as_ref().map(|tissue| organ(tissue, &surface.surface, largest)).transpose()?;
         let shells = shells(&surface, &sites, &plan.shells, around.as_ref(), progress)?;
-        let report = (!plan.shells.is_empty()).then(|| report(&shells, &surface));
+        let report = (!plan.shells.is_empty()).then(|| ShellsReport { moved, ..report(&shells, &surface) });
         let layout = Layout::new(&surface, &shells, around.as_ref());
         let tissue = match &plan.tissue {
             Some(plan) => Some(fill(plan, layout.outside(), progress)?),
@@ -137,7 +142,13 @@ fn report(shells: &Shells, lumen: &LumenSurface) -> ShellsReport {
     let points = on_wall.iter().filter(|&&on_wall| on_wall).count();
     let less = shells.shares.iter().filter(|&&share| share < 1.0 - 1e-9).count();
     let place = |(v, share): (u32, f64)| (share, lumen.surface.points[v as usize].coords.into());
-    ShellsReport { points, complete: points - less, thin: shells.thin(), thinnest: shells.thinnest().map(place) }
+    ShellsReport {
+        points,
+        complete: points - less,
+        thin: shells.thin(),
+        moved: 0,
+        thinnest: shells.thinnest().map(place),
+    }
 }
 
 /// Fills the tissue. The points of its mesh begin with those of the surface.

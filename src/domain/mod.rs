@@ -11,6 +11,7 @@ mod plan;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod unfold;
 mod without;
 
 pub use build::{Domain, ShellsReport};

@@ -71,13 +71,17 @@ pub fn fidelity_rows(fidelity: Option<&Fidelity>, changes: Option<&Changes>, nam
 
 /// Thickness of shells in one line.
 fn of_shells(shells: &ShellsReport) -> String {
-    let ShellsReport { points, complete, thin, thinnest } = *shells;
+    let ShellsReport { points, complete, thin, moved, thinnest } = *shells;
     let full = percent(complete as f64 / points.max(1) as f64);
     let least = thinnest.map_or_else(String::new, |(share, at)| {
         let share = percent(share);
         format!("; least {share} at {}, below half at {}", place(at), counted(thin, "point"))
     });
-    format!("full thickness at {full} of the wall{least}")
+    let moved = match moved {
+        0 => String::new(),
+        n => format!("; {} of a folded wall moved", counted(n, "point")),
+    };
+    format!("full thickness at {full} of the wall{least}{moved}")
 }
 
 /// Passes over the network with the fault of each; `None` if there was one alone.

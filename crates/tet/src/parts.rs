@@ -8,3 +8,4 @@ pub use crate::layers::{Directions, Inset, Numbers, Places, inset, rims, toward}
 pub use crate::names::Names;
 pub use crate::optimize::{OptimizeOptions, optimize};
 pub use crate::progress::{Counter, Watch};
+pub use crate::shells::blind_vertices;
