@@ -1,59 +1,135 @@
 //! Smoothing of a lumen's wall where it is folded, so that a shell fits.
 //!
-//! At a folded vertex no direction leads away from all triangles of the wall, and prisms would invert. The vertex moves
-//! towards its neighbours as far as the tetrahedra of the lumen stay positive.
+//! At a folded vertex no direction leads away from all triangles of the wall, and prisms would invert. The vertex and its
+//! neighbours move as far as necessary, and the tetrahedra of the lumen stay positive.
 
 use super::surface::LumenSurface;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::Incidence;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_tet::parts::blind_vertices;
+use anastomesh_tet::parts::openness;
+use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+/// Openness below which a vertex is folded: the least cosine between its direction and the normals of its triangles.
+const FOLDED: f64 = 0.1;
 /// Passes over the folded vertices.
-const PASSES: usize = 8;
-/// Shares of the way to the centre of the neighbours, in order of preference.
-const SHARES: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
+const PASSES: usize = 12;
+/// Steps of a vertex, relative to its mean edge.
+const STEPS: [f64; 3] = [0.4, 0.15, 0.05];
 
-/// Moves folded vertices of the wall. Returns their number.
+/// Moves folded vertices of the wall. Returns the number of moved vertices.
 pub fn unfold(mesh: &mut TetMesh, lumen: &mut LumenSurface) -> usize {
-    let surface = &mut lumen.surface;
-    let wall: Vec<[u32; 3]> =
-        surface.triangles.iter().zip(&lumen.caps).filter(|(_, cap)| cap.is_none()).map(|(t, _)| *t).collect();
-    let seen_from_inside: Vec<[u32; 3]> = wall.iter().map(|&[a, b, c]| [a, c, b]).collect();
-    let capped = surface.triangles.iter().zip(&lumen.caps).filter(|(_, cap)| cap.is_some());
-    let of_caps: FxHashSet<u32> = capped.flat_map(|(t, _)| *t).collect();
+    let mut wall = Wall::of(lumen);
+    let all: Vec<u32> = (0..lumen.surface.points.len() as u32).filter(|v| !wall.of_caps.contains(v)).collect();
+    let mut folded = wall.folded(&all);
+    if folded.is_empty() {
+        return 0;
+    }
+    let mut near: Vec<u32> = folded.iter().flat_map(|&v| wall.with_neighbours(v)).collect();
+    near.sort_unstable();
+    near.dedup();
+    let tets = tets_at(mesh, near.iter().map(|&v| lumen.points[v as usize]));
     let mut moved = FxHashSet::default();
-    let mut around = None;
     for _ in 0..PASSES {
-        let folded = blind_vertices(&surface.points, &seen_from_inside);
-        if folded.is_empty() {
-            break;
-        }
-        let neighbours = around.get_or_insert_with(|| Incidence::of_vertices(&wall, surface.points.len()));
-        // A fold has several vertices, of which each may be in the way of the others.
-        let mut vertices: Vec<u32> =
-            folded.iter().flat_map(|&v| neighbours.get(v)).copied().chain(folded.iter().copied()).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices.retain(|v| !of_caps.contains(v));
-        let tets = tets_at(mesh, vertices.iter().map(|&v| lumen.points[v as usize]));
-        for v in vertices {
-            let ring = neighbours.get(v);
-            let sum: Vec3 = ring.iter().map(|&w| surface.points[w as usize].coords).sum();
-            let centre = Point3::from(sum / ring.len().max(1) as f64);
-            let (own, vertex) = (surface.points[v as usize], lumen.points[v as usize]);
-            let fits = |p: &Point3| stays_positive(mesh, &tets[&vertex], vertex, p);
-            let place = SHARES.into_iter().map(|share| own + (centre - own) * share).find(fits);
-            if let Some(place) = place {
-                surface.points[v as usize] = place;
+        let candidates: Vec<u32> = folded.iter().flat_map(|&v| wall.with_neighbours(v)).collect();
+        for v in candidates {
+            let vertex = lumen.points[v as usize];
+            // Only vertices around those that were folded at first may move.
+            let Some(tets) = tets.get(&vertex) else { continue };
+            if let Some(place) = wall.better(v, |p| stays_positive(mesh, tets, vertex, p)) {
+                wall.points[v as usize] = place;
                 mesh.points[vertex as usize] = place;
                 moved.insert(v);
             }
         }
+        folded = wall.folded(&near);
+        if folded.is_empty() {
+            break;
+        }
     }
+    lumen.surface.points = wall.points;
     moved.len()
+}
+
+/// Wall of a lumen with its triangles at each vertex.
+struct Wall {
+    points: Vec<Point3>,
+    triangles: Vec<[u32; 3]>,
+    at_vertex: Incidence,
+    neighbours: Incidence,
+    /// Vertices of caps, which do not move.
+    of_caps: FxHashSet<u32>,
+}
+
+impl Wall {
+    fn of(lumen: &LumenSurface) -> Self {
+        let capped = lumen.surface.triangles.iter().zip(&lumen.caps);
+        let triangles: Vec<[u32; 3]> = capped.clone().filter(|(_, cap)| cap.is_none()).map(|(t, _)| *t).collect();
+        let points = lumen.surface.points.clone();
+        Self {
+            at_vertex: Incidence::of_cells(&triangles, points.len()),
+            neighbours: Incidence::of_vertices(&triangles, points.len()),
+            of_caps: capped.filter(|(_, cap)| cap.is_some()).flat_map(|(t, _)| *t).collect(),
+            points,
+            triangles,
+        }
+    }
+
+    /// A vertex and those around it that may move.
+    fn with_neighbours(&self, v: u32) -> Vec<u32> {
+        let around = self.neighbours.get(v).iter().copied().chain([v]);
+        around.filter(|v| !self.of_caps.contains(v)).collect()
+    }
+
+    fn folded(&self, vertices: &[u32]) -> Vec<u32> {
+        vertices.par_iter().copied().filter(|&v| self.openness(v) < FOLDED).collect()
+    }
+
+    fn openness(&self, v: u32) -> f64 {
+        let inward = |&t: &u32| {
+            let [a, b, c] = self.triangles[t as usize].map(|v| self.points[v as usize]);
+            -(b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+        };
+        openness(&self.at_vertex.get(v).iter().map(inward).collect::<Vec<Vec3>>())
+    }
+
+    /// Least openness of a vertex and those around it.
+    fn around(&self, v: u32) -> f64 {
+        self.with_neighbours(v).into_iter().map(|v| self.openness(v)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Place of a vertex at which it and those around it are more open.
+    fn better(&mut self, v: u32, fits: impl Fn(&Point3) -> bool) -> Option<Point3> {
+        let own = self.points[v as usize];
+        let ring = self.neighbours.get(v);
+        let length = |w: &u32| (self.points[*w as usize] - own).norm();
+        let mean = ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64;
+        let mut best = (self.around(v), own);
+        for step in STEPS {
+            for way in ways() {
+                let place = best.1 + way * (step * mean);
+                if !fits(&place) {
+                    continue;
+                }
+                self.points[v as usize] = place;
+                let open = self.around(v);
+                if open > best.0 {
+                    best = (open, place);
+                }
+            }
+        }
+        self.points[v as usize] = own;
+        (best.1 != own).then_some(best.1)
+    }
+}
+
+/// Unit vectors to the faces, edges and corners of a cube.
+fn ways() -> impl Iterator<Item = Vec3> {
+    let axis = || [-1.0, 0.0, 1.0].into_iter();
+    let all = axis().flat_map(move |x| axis().flat_map(move |y| axis().map(move |z| Vec3::new(x, y, z))));
+    all.filter_map(|way| way.try_normalize(0.0))
 }
 
 /// Tetrahedra at some vertices.
@@ -75,4 +151,35 @@ fn stays_positive(mesh: &TetMesh, tets: &[[u32; 4]], vertex: u32, place: &Point3
         let [a, b, c, d] = tet.map(|v| if v == vertex { place } else { &mesh.points[v as usize] });
         orient3d(a, b, c, d) > 0.0
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::TriMesh;
+    use anastomesh_mesh::check::check_tets;
+    use anastomesh_mesh::shapes::sphere_surface;
+    use anastomesh_tet::Tetrahedralizer;
+
+    #[test]
+    fn a_folded_vertex_is_opened() {
+        let ball = sphere_surface(3);
+        let mut mesh = Tetrahedralizer::new().run(&ball).expect("filled").mesh;
+        // Pushed in beyond its neighbours, and to the side: its triangles then face each other.
+        let far = ball.points[40] * 0.93;
+        let beside = Incidence::of_vertices(&ball.triangles, ball.points.len()).get(40)[0];
+        let folded = far + (ball.points[beside as usize] - ball.points[40]) * 0.97;
+        mesh.points[40] = folded;
+        let surface = TriMesh { points: mesh.points[..ball.points.len()].to_vec(), triangles: ball.triangles.clone() };
+        let caps = vec![None; surface.triangles.len()];
+        let mut lumen =
+            LumenSurface { points: (0..surface.points.len() as u32).collect(), surface, caps, patches: Vec::new() };
+        let before = Wall::of(&lumen).openness(40);
+        let was_positive = check_tets(&mesh, None).failed().next().is_none();
+        let moved = unfold(&mut mesh, &mut lumen);
+        assert!(before < FOLDED && moved > 0, "{before} {moved}");
+        assert!(Wall::of(&lumen).openness(40) >= FOLDED);
+        assert_eq!(mesh.points[40], lumen.surface.points[40]);
+        assert!(!was_positive || check_tets(&mesh, None).failed().next().is_none());
+    }
 }

@@ -60,6 +60,13 @@ impl Directions {
     }
 }
 
+/// Greatest minimum cosine between a direction and the reversed normals of the triangles at a vertex; 0 if no direction
+/// leads away from all of them.
+pub fn openness(normals: &[Vec3]) -> f64 {
+    let way = inward_direction(normals);
+    if way == Vec3::zeros() { 0.0 } else { steepness(&way, normals) }
+}
+
 /// Minimum cosine between an inward direction and the reversed normals.
 fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
     normals.iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)

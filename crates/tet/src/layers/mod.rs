@@ -18,7 +18,7 @@ mod stack;
 mod tests;
 mod whole;
 
-pub use direction::Directions;
+pub use direction::{Directions, openness};
 pub use half_width::clear_widths;
 pub use inset::{Inset, Places, Ways, inset, lower};
 pub use stack::{Numbers, Stack, rims, toward};

@@ -8,8 +8,6 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 /// Minimum cosine between a direction in the plane of a cap and the normals of the wall. The wall behind a cap may rise
 /// above its plane, where a tip ends inside a fork; the ring is not flat there.
 const STEEP: f64 = 0.25;
-/// Least cosine between the direction at a vertex and the normals of its triangles for which prisms have a shape.
-const LEAST: f64 = 0.1;
 /// Shares of the wall's own direction that are added to one that is not steep enough.
 const TURNED: [f64; 3] = [0.5, 1.0, 2.0];
 
@@ -42,16 +40,6 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
     }
     ways.smooth(wall, &is_held);
     [ways.ways, planes]
-}
-
-/// Vertices of a wall, seen from inside, from which no direction leads away from all their triangles steeply enough.
-pub fn blind_vertices(points: &[Point3], wall: &[[u32; 3]]) -> Vec<u32> {
-    let ways = Directions::new(points, wall);
-    let mut vertices: Vec<u32> = wall.as_flattened().to_vec();
-    vertices.sort_unstable();
-    vertices.dedup();
-    vertices.retain(|&v| ways.steepness(v as usize, &ways.ways[v as usize]) < LEAST);
-    vertices
 }
 
 /// Centre of area and unit normal of a cap.

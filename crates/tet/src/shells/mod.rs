@@ -23,7 +23,6 @@ use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
-pub use directions::blind_vertices;
 use settle::{Given, Settled, settle};
 
 /// Fraction of the thickness asked for below which shells count as thin.
