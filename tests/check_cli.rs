@@ -2,7 +2,8 @@
 
 mod common;
 
-use anastomesh::io::{read_mesh, write_mesh};
+use anastomesh::io::{MeshNotes, read_mesh, write_mesh};
+use anastomesh::mesh::shapes::walled_channel;
 use common::fixture;
 use common::program::*;
 use std::fs;
@@ -83,4 +84,32 @@ fn check_finds_what_is_broken() {
     let cap = mislabelled.boundary_patch.iter().position(|&p| p == 2).expect("an inlet");
     mislabelled.boundary_patch[cap] = 3;
     fails(&mislabelled, "2 caps are not discs");
+}
+
+#[test]
+fn regions_are_checked_and_listed() {
+    let folder = folder();
+    let (volume, regions) = walled_channel(1);
+    let notes = MeshNotes { regions, ..MeshNotes::default() };
+    for name in ["organ.vtu", "organ.msh", "organ.mesh", "organ.ele", "organ.npyd"] {
+        let path = folder.path().join(name);
+        write_mesh(&path, &volume, &notes).expect("a file");
+        let output = run("check", &[&path], &[]);
+        assert_code(&output, FINE);
+        let second = if name == "organ.ele" { "region_2" } else { "wall" };
+        let line = format!("region   {second}: 240 tetrahedra, 1 component, 192 boundary faces, volume 0.32000\n");
+        assert!(stdout(&output).contains(&line), "{}", stdout(&output));
+    }
+    let mut broken = volume.clone();
+    let face = broken.boundary_patch.iter().position(|&patch| patch == 4).expect("an interface");
+    broken.boundary_patch[face] = 5;
+    let path = folder.path().join("broken.vtu");
+    write_mesh(&path, &broken, &notes).expect("a file");
+    let output = run("check", &[&path], &["--json"]);
+    assert_code(&output, GATE_NOT_MET);
+    let report = json(&output);
+    assert_eq!(report["regions"][2]["name"], "tissue");
+    let failed: Vec<_> = report["lines"].as_array().expect("lines").iter().filter(|l| l["outcome"] == "fail").collect();
+    assert_eq!(failed.len(), 1);
+    assert_eq!(failed[0]["line"], "interface_sides");
 }

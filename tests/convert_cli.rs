@@ -2,7 +2,8 @@
 
 mod common;
 
-use anastomesh::io::{NetworkOptions, read_mesh, read_network, read_surface};
+use anastomesh::io::{MeshNotes, NetworkOptions, read_mesh, read_network, read_surface, write_mesh};
+use anastomesh::mesh::shapes::walled_channel;
 use common::fixture;
 use common::program::*;
 use std::fs;
@@ -34,6 +35,32 @@ fn meshes_become_each_other() {
     assert_code(&pieces, FINE);
     assert!(!stderr(&pieces).contains("loaded completely"), "{}", stderr(&pieces));
     assert_eq!(read_mesh(&at("pieces.vtu")).expect("a mesh"), expected);
+}
+
+#[test]
+fn regions_are_split() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let (volume, regions) = walled_channel(2);
+    let notes = MeshNotes { regions, ..MeshNotes::default() };
+    write_mesh(&at("organ.vtu"), &volume, &notes).expect("a file");
+    let made = convert(&at("organ.vtu"), &at("parts.msh"), &["--split-regions"]);
+    assert_code(&made, FINE);
+    assert_eq!(read_mesh(&at("parts.msh")).expect("a mesh").volume, volume);
+    for name in ["parts_lumen.vtu", "parts_wall.vtu", "parts_tissue.vtu"] {
+        assert!(stderr(&made).contains(name), "{}", stderr(&made));
+        let checked = run("check", &[&at(name)], &[]);
+        assert_code(&checked, FINE);
+        assert!(!stdout(&checked).contains("FAIL"), "{}", stdout(&checked));
+    }
+    let split = convert(&at("organ.vtu"), &at("organ.stl"), &["--split-regions"]);
+    assert_code(&split, USAGE);
+    // A mesh without regions.
+    write_mesh(&at("plain.vtu"), &volume, &MeshNotes::default()).expect("a file");
+    let split = convert(&at("plain.vtu"), &at("b.vtu"), &["--split-regions"]);
+    assert_code(&split, BAD_INPUT);
+    assert!(stderr(&split).contains("the mesh has no regions to split"), "{}", stderr(&split));
+    assert!(!at("b.vtu").exists());
 }
 
 #[test]

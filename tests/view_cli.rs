@@ -2,6 +2,8 @@
 
 mod common;
 
+use anastomesh::io::{MeshNotes, write_mesh};
+use anastomesh::mesh::shapes::walled_channel;
 use common::fixture;
 use common::oracle::missing;
 use common::program::*;
@@ -50,6 +52,22 @@ fn a_mesh_a_network_and_a_surface_become_pages() {
     assert!(facts(&page)["wall"].is_null() && facts(&page)["network"]["orders"].as_u64() > Some(2));
     assert_code(&view(&fixture("torus.off"), &page, &["-q"]), FINE);
     assert!(facts(&page)["network"].is_null() && facts(&page)["tets"]["all"] == 0);
+}
+
+#[test]
+fn regions_are_listed_with_their_interfaces() {
+    let folder = folder();
+    let (volume, regions) = walled_channel(1);
+    let path = folder.path().join("organ.vtu");
+    write_mesh(&path, &volume, &MeshNotes { regions, ..MeshNotes::default() }).expect("a file");
+    let page = folder.path().join("organ.html");
+    assert_code(&view(&path, &page, &[]), FINE);
+    let facts = facts(&page);
+    assert_eq!(facts["regions"][1], serde_json::json!({ "id": 2, "name": "wall" }));
+    let beyond: Vec<_> = facts["patches"].as_array().expect("patches").iter().map(|patch| &patch["beyond"]).collect();
+    // Inlet, outlet and both interfaces.
+    assert_eq!(beyond[..4], [&Value::Null, &Value::Null, &2.into(), &3.into()]);
+    assert_eq!(facts["check"]["verdict"], "no_fault_found");
 }
 
 #[test]

@@ -45,8 +45,8 @@ pub struct Args {
     /// Write only the wall (patch 1) of the boundary, without inlets and outlets
     #[arg(long)]
     no_caps: bool,
-    /// Write each region of a mesh with regions to a file beside the output, too: `OUT_lumen.vtu`, `OUT_wall.vtu`, …, with
-    /// the numbers of points and cells in the whole mesh (`GlobalNodeID`, `GlobalElementID`)
+    /// Write each region to a file beside the output, too: `OUT_lumen.vtu`, `OUT_wall.vtu`, …. Points and cells have their
+    /// numbers in the whole mesh (`GlobalNodeID`, `GlobalElementID`)
     #[arg(long)]
     split_regions: bool,
     /// Memory limit for VTU files of `mesh`, which are then read block by block. Other files are loaded completely

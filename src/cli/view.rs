@@ -18,6 +18,7 @@ use crate::pipeline::{Datum, VesselData};
 use crate::view::{FaultGroup, ViewerPage, Wall, WallOptions, add_network, add_tets};
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_mesh::NamedRegion;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_skeleton::{NodeId, Skeleton};
 
@@ -82,7 +83,7 @@ impl Args {
         let mut faults: Vec<FaultGroup> = self.dumps()?.into_iter().collect();
         if let Some(left) = left_in(path)? {
             page.add_check(Err("`view` checks finished meshes only"));
-            faults.extend(self.add_mesh(&mut page, &left.whole(&()))?);
+            faults.extend(self.add_mesh(&mut page, &left.whole(&()), &[])?);
             page.add_faults(&faults);
             return Ok(page);
         }
@@ -94,13 +95,13 @@ impl Args {
             }
             FileKind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
-                faults.extend(self.add_mesh(&mut page, &boundary_of(surface))?);
+                faults.extend(self.add_mesh(&mut page, &boundary_of(surface), &[])?);
             }
             FileKind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
                 faults.extend(self.faults_of(&mut page, &opened)?);
                 opened.label_boundary();
-                faults.extend(self.add_mesh(&mut page, opened.source())?);
+                faults.extend(self.add_mesh(&mut page, opened.source(), &opened.notes().regions)?);
             }
         }
         page.add_faults(&faults);
@@ -126,7 +127,12 @@ impl Args {
     }
 
     /// Adds a mesh, and returns the positions of missing blocks.
-    fn add_mesh(&self, page: &mut ViewerPage, mesh: &dyn MeshSource) -> Result<Option<FaultGroup>, Failure> {
+    fn add_mesh(
+        &self,
+        page: &mut ViewerPage,
+        mesh: &dyn MeshSource,
+        regions: &[NamedRegion],
+    ) -> Result<Option<FaultGroup>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
         let network = match &self.made_of {
@@ -140,10 +146,10 @@ impl Args {
         if wall.triangles() == 0 {
             return Err(Failure::input(format!("{path}: the mesh has no boundary to show")));
         }
-        let tets = add_tets(mesh, &wall, &mut page.pack).map_err(failed)?;
+        let tets = add_tets(mesh, &wall, !regions.is_empty(), &mut page.pack).map_err(failed)?;
         page.know("tets", tets);
         let missing = FaultGroup::of_missing(&wall, mesh.patches());
-        page.add_wall(wall, mesh.patches());
+        page.add_wall(wall, mesh.patches(), regions);
         if let Some((network, inlets)) = &network {
             know_network(page, network, inlets)?;
         }

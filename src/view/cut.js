@@ -19,6 +19,7 @@ class Tets {
     for (let i = 0; i < behind.length; i++) behind[i] = w - x * points[3 * i] - y * points[3 * i + 1] - z * points[3 * i + 2];
     const found = [];
     for (let t = 0; t < tets.length; t += 4) {
+      if (!isShown(this.blocks[t / 4])) continue;
       const n = (behind[tets[t]] >= 0) + (behind[tets[t + 1]] >= 0) + (behind[tets[t + 2]] >= 0) + (behind[tets[t + 3]] >= 0);
       if (n > 0 && n < 4) found.push(t);
     }

@@ -129,7 +129,8 @@ class Viewer {
     if (this.wall && found.id > 0) {
       const patch = this.wall.groups.patch[found.id - 1], known = patches.get(patch);
       lines.push(`patch ${patch}${known ? `: ${known.name}` : ""}${known && known.node != null ? ` (node ${known.node})` : ""}`);
-      lines.push(`block ${this.wall.groups.block[found.id - 1]}`);
+      const block = this.wall.groups.block[found.id - 1];
+      lines.push(regions.has(block) ? `region ${block}: ${regions.get(block).name}` : `block ${block}`);
     } else if (this.wall) lines.push("clipped tetrahedron");
     if (this.network) {
       const edge = this.wall ? this.network.nearest(found.position) : this.along(found.id - 1, found.position);
@@ -212,9 +213,17 @@ class Viewer {
     }
     if (this.tets && axis !== "") this.tets.cut(this.plane, (block, corners) => {
       const quantity = $("colour").value;
-      return quantity === "quality" ? interpolate(QUALITY, radiusRatio(corners)) : quantity === "block" ? blockColour(block) : PALETTE.inside;
+      return quantity === "quality" ? interpolate(QUALITY, radiusRatio(corners)) : quantity === "block" ? blockColour(block)
+        : regions.size > 0 ? regionColour(block) : PALETTE.inside;
     });
     this.redraw();
+  }
+
+  /** Shows or hides a region. */
+  toggle(id, isOn) {
+    regions.get(id).hidden = !isOn;
+    this.wall.show();
+    this.clip();
   }
 
   /** Applies the selected colours. */

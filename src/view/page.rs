@@ -4,9 +4,9 @@ use super::chunk::pack_wall;
 use super::faults::FaultGroup;
 use super::pack::Pack;
 use super::wall::Wall;
-use anastomesh_mesh::Patch;
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::verdict;
+use anastomesh_mesh::{NamedRegion, Patch};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -47,12 +47,18 @@ impl ViewerPage {
         self.facts.insert(name.into(), fact);
     }
 
-    /// Adds the wall of a mesh.
-    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch]) {
+    /// Adds the wall of a mesh, and its regions, which are blocks. An interface belongs to the region with the smaller id.
+    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch], regions: &[NamedRegion]) {
         let fact = pack_wall(wall, &mut self.pack);
         self.know("wall", fact);
-        let patch = |p: &Patch| json!({ "id": p.id, "name": p.name, "node": p.cap.map(|cap| cap.node) });
+        let patch = |p: &Patch| {
+            let beyond = NamedRegion::pair_of(regions, &p.name).map(|[_, beyond]| beyond);
+            json!({ "id": p.id, "name": p.name, "node": p.cap.map(|cap| cap.node), "beyond": beyond })
+        };
         self.know("patches", patches.iter().map(patch).collect());
+        if !regions.is_empty() {
+            self.know("regions", json!(regions));
+        }
     }
 
     /// Adds faults that the viewer can navigate to.

@@ -38,7 +38,7 @@ function patchSwatches(ids) {
 /** Legend of the colours by a quantity. */
 function legendOf(quantity, scene) {
   const shades = Array.from({ length: 9 }, (_, i) => viridis(i / 8));
-  const inside = facts.tets && facts.tets.shown > 0 && ["patch", "radius", "order"].includes(quantity)
+  const inside = facts.tets && facts.tets.shown > 0 && regions.size === 0 && ["patch", "radius", "order"].includes(quantity)
     ? [swatch(PALETTE.inside, "clipped tetrahedra")] : [];
   if (quantity === "radius") {
     const [low, high] = (facts.wall || facts.network).radii;
@@ -49,6 +49,7 @@ function legendOf(quantity, scene) {
     return [make("p", { textContent: "Strahler order" }), ...colours.map((colour, i) => swatch(colour, String(i + 1))), ...inside];
   }
   if (quantity === "quality") return colourBar(QUALITY, ["0", "0.25", "0.5", "0.75", "1"], "Radius ratio (1: regular)");
+  if (quantity === "region") return [...regions.values()].map(({ id, name }) => swatch(regionColour(id), name));
   if (quantity === "patch") return [...patchSwatches(new Set(scene.groups.patch)), ...inside];
   const blocks = scene.groups ? new Set(scene.groups.block).size : new Set(scene.network.branches).size;
   return [make("p", { textContent: `${count(blocks, scene.groups ? "block" : "vessel")}; hues have no order` })];
@@ -75,6 +76,16 @@ function listFaults(show) {
   return total;
 }
 
+/** Switches of the regions. */
+function listRegions(toggle) {
+  $("regions").hidden = regions.size === 0;
+  for (const { id, name } of regions.values()) {
+    const box = make("input", { type: "checkbox", checked: true });
+    box.onchange = () => toggle(id, box.checked);
+    $("regions").append(make("label", {}, box, " ", swatch(regionColour(id), name)));
+  }
+}
+
 /** Verdict: a banner if the mesh has faults or was not checked, otherwise a line in the panel. */
 function showVerdict(faults) {
   const { check } = facts, banner = $("banner");
@@ -98,7 +109,7 @@ function fillPanel(viewer) {
       count(facts.wall.faces, "boundary face"), ...(wall.triangles === facts.wall.faces ? [] : [`${wall.triangles.toLocaleString("en")} shown`])]
     : [count(facts.network.edges, "edge")];
   $("counts").textContent = sizes.join(", ");
-  const quantities = wall ? ["patch", "block", "quality", ...(facts.wall.radii ? ["radius", "order"] : [])] : ["radius", "order", "vessel"];
+  const quantities = wall ? [...(regions.size > 0 ? ["region"] : []), "patch", ...(regions.size > 0 ? [] : ["block"]), "quality", ...(facts.wall.radii ? ["radius", "order"] : [])] : ["radius", "order", "vessel"];
   $("colour").append(...quantities.map(name => make("option", { textContent: name, value: name === "vessel" ? "block" : name })));
   $("edges").checked = !!wall && facts.wall.exact && wall.triangles < 60000;
   $("edges-label").hidden = !wall;
@@ -107,6 +118,7 @@ function fillPanel(viewer) {
     const [axis, at] = facts.tets.plane;
     $("tets").textContent = `The page contains ${facts.tets.shown.toLocaleString("en")} tetrahedra, at ${"xyz"[axis]} = ${number(at)}. Elsewhere a clip plane shows the wall only.`;
   }
+  listRegions((id, isOn) => viewer.toggle(id, isOn));
   showVerdict(listFaults((fault, button, group) => viewer.flyTo(fault, button, group)));
 }
 

@@ -22,6 +22,22 @@ function blockColour(block) {
   });
 }
 
+const regions = new Map((facts.regions || []).map(region => [region.id, region]));
+const REGIONS = { lumen: [186, 58, 54], wall: [232, 176, 140], annulus: [96, 168, 206], tissue: [168, 182, 170] };
+
+/** Colour of a region: by its name, otherwise by its place in the list. */
+function regionColour(id) {
+  const { name } = regions.get(id) || { name: "" }, place = [...regions.keys()].indexOf(id);
+  return (Object.hasOwn(REGIONS, name) && REGIONS[name]) || OTHERS[(place + OTHERS.length) % OTHERS.length];
+}
+
+/** True if a face of a region is shown: the region is, and the one beyond an interface is not, or the other way round. */
+function isShown(region, patch) {
+  if (regions.size === 0) return true;
+  const on = id => !(regions.get(id) || {}).hidden, { beyond } = patches.get(patch) || {};
+  return beyond == null ? on(region) : on(region) !== on(beyond);
+}
+
 const patches = new Map((facts.patches || []).map(patch => [patch.id, patch]));
 
 /** Kind of a patch: wall, inlet, outlet or its own name. */
@@ -69,6 +85,7 @@ class Walls {
     const line = Uint16Array.from(get("line"));
     const chunk = { names, corners, position, count, first, ends, origin, size: 65535 * step, line,
       radii: Float64Array.from(pieces, r => r / 16 * step), lineNames: Uint32Array.from(lineNames),
+      all: { corners, ends: ends.faces, faces, groups: ofPieces },
       quality: get("quality"), radius: get("radius"), order: get("order") };
     chunk.box = bounds(position, origin, step);
     const normals = vertexNormals(position, corners);
@@ -78,7 +95,7 @@ class Walls {
     attribute(gl, 1, normals, 4, gl.BYTE, true);
     chunk.colours = attribute(gl, 2, new Uint8Array(4 * count), 4, gl.UNSIGNED_BYTE, true);
     integerAttribute(gl, 3, names);
-    buffer(gl, corners, gl.ELEMENT_ARRAY_BUFFER);
+    chunk.elements = buffer(gl, corners, gl.ELEMENT_ARRAY_BUFFER);
     chunk.lines = gl.createVertexArray();
     gl.bindVertexArray(chunk.lines);
     attribute(gl, 0, line, 3, gl.UNSIGNED_SHORT, true);
@@ -88,7 +105,35 @@ class Walls {
     return chunk;
   }
 
-  /** Colours the wall by patch, block, quality, radius or order. */
+  /** Leaves out the faces of hidden regions. */
+  show() {
+    const gl = this.gl;
+    for (const chunk of this.chunks) {
+      const { all } = chunk, corners = new Uint32Array(all.corners.length), ends = [0];
+      let [group, from, to] = [0, 0, 0];
+      for (const groups of all.groups) {
+        for (let i = 0; i < groups; i++, group++) {
+          const next = from + 3 * all.faces[group], name = chunk.first + group;
+          if (isShown(this.groups.block[name], this.groups.patch[name])) {
+            corners.set(all.corners.subarray(from, next), to);
+            to += next - from;
+          }
+          from = next;
+        }
+        ends.push(to);
+      }
+      chunk.corners = corners.slice(0, to);
+      chunk.ends.faces = ends;
+      gl.bindVertexArray(chunk.faces);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, chunk.elements);
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, chunk.corners, gl.STATIC_DRAW);
+      gl.bindVertexArray(null);
+      if (chunk.edges) gl.deleteVertexArray(chunk.edges);
+      chunk.edges = null;
+    }
+  }
+
+  /** Colours the wall by patch, region, block, quality, radius or order. */
   colour(what) {
     const gl = this.gl;
     const most = facts.network ? facts.network.orders : 1;
@@ -100,6 +145,7 @@ class Walls {
     for (const chunk of this.chunks) {
       const of = what === "quality" ? chunk.quality : what === "radius" ? chunk.radius : chunk.order;
       const ofGroup = name => what === "block" ? blockColour(this.groups.block[name - 1])
+        : what === "region" ? regionColour(this.groups.block[name - 1])
         : what === "patch" ? patchColour(this.groups.patch[name - 1]) : PALETTE.wall;
       const paint = (names, pick) => {
         const out = new Uint8Array(4 * names.length);

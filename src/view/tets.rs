@@ -15,11 +15,16 @@ const SOME: usize = 300_000;
 const STEPS: u32 = 1 << 20;
 
 /// Adds tetrahedra and returns the metadata for the page. Of a large mesh, selects blocks at the middle plane across
-/// the longest side, widest first.
+/// the longest side, widest first. If the blocks are regions, selects the tetrahedra at that plane.
 ///
 /// # Errors
 /// The mesh cannot be read.
-pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Result<serde_json::Value> {
+pub fn add_tets(
+    mesh: &dyn MeshSource,
+    wall: &Wall,
+    has_regions: bool,
+    pack: &mut Pack,
+) -> io::Result<serde_json::Value> {
     let count = mesh.counts().tets;
     let mut held = Held::default();
     let plane = middle(wall);
@@ -27,7 +32,19 @@ pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Resu
         mesh.each_part(
             |part| held_part(mesh, part),
             |(piece, corners)| {
-                held.add(&piece, &corners, None);
+                held.add(&piece, &corners, MOST, |_, _| true);
+                Ok(())
+            },
+        )?;
+    } else if has_regions {
+        let (axis, at) = plane;
+        mesh.each_part(
+            |part| held_part(mesh, part),
+            |(piece, corners)| {
+                held.add(&piece, &corners, SOME, |_, corners| {
+                    let behind = corners.iter().filter(|corner| corner[axis] < at).count();
+                    (1..4).contains(&behind)
+                });
                 Ok(())
             },
         )?;
@@ -41,7 +58,7 @@ pub fn add_tets(mesh: &dyn MeshSource, wall: &Wall, pack: &mut Pack) -> io::Resu
             };
             if is_wanted && held.tets.len() < 4 * SOME {
                 let (piece, corners) = held_part(mesh, part)?;
-                held.add(&piece, &corners, Some(&wanted));
+                held.add(&piece, &corners, SOME, |block, _| wanted.contains(&block));
             }
         }
     }
@@ -70,11 +87,11 @@ struct Held {
 }
 
 impl Held {
-    /// Adds the selected tetrahedra of a part.
-    fn add(&mut self, piece: &TetPiece, corners: &[[Point3; 4]], of: Option<&FxHashSet<i32>>) {
+    /// Adds the tetrahedra of a part that are selected by block and corners, up to a limit.
+    fn add(&mut self, piece: &TetPiece, corners: &[[Point3; 4]], most: usize, has: impl Fn(i32, &[Point3; 4]) -> bool) {
         for (i, (tet, at)) in piece.tets.iter().zip(corners).enumerate() {
             let block = piece.blocks.get(i).copied().unwrap_or(0);
-            if of.is_some_and(|wanted| !wanted.contains(&block) || self.blocks.len() >= SOME) {
+            if self.blocks.len() >= most || !has(block, at) {
                 continue;
             }
             for k in 0..4 {

@@ -52,7 +52,7 @@ pub fn region_paths(path: &Path, regions: &[NamedRegion]) -> Vec<PathBuf> {
 /// ```
 ///
 /// # Errors
-/// `Write` with the reason: the operating system or the mesh source fails, the mesh has no regions, two regions have one
+/// `Write` with the reason. The operating system or the mesh source fails, or the mesh has no regions. Two regions have one
 /// file name, or numbers exceed 32 bits.
 pub fn write_regions(
     path: &Path,

@@ -67,7 +67,7 @@ pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> C
 /// let report = check_regions(&volume, &regions, None);
 /// assert_eq!(report.failed().count(), 0);
 /// assert_eq!((report.regions[1].name.as_str(), report.regions[1].components), ("wall", 1));
-/// volume.tet_block[40] = 2;
+/// volume.tet_block[0] = 2;
 /// let report = check_regions(&volume, &regions, None);
 /// assert!(report.failed().any(|failed| failed.line == Line::InterfacesLabelled));
 /// ```

@@ -10,12 +10,9 @@ use crate::adjacency::{NONE, TetAdjacency};
 use crate::geometry::DisjointSets;
 use crate::quality::volume6;
 use crate::region::{RegionFace, faces_with};
-use crate::{NamedRegion, TetMesh, VolumeMesh, WALL, face_key, same_turn};
+use crate::{NamedRegion, Patch, TetMesh, VolumeMesh, WALL, face_key, same_turn};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
-
-/// Beginning of the names of interface patches.
-const INTERFACE: &str = "interface_";
 
 /// Mesh with regions during a check.
 pub(super) struct RegionCheck<'a> {
@@ -130,7 +127,7 @@ impl<'a> RegionCheck<'a> {
     fn lumen_boundary(&self) -> VolumeMesh {
         let volume = self.volume;
         let Some(id) = self.lumen() else { return VolumeMesh::default() };
-        let is_wall = |patch: &&crate::Patch| patch.cap.is_none() && patch.name.starts_with(INTERFACE);
+        let is_wall = |patch: &&Patch| patch.cap.is_none() && patch.name.starts_with(NamedRegion::INTERFACE);
         let walls: Vec<i32> = volume.patches.iter().filter(is_wall).map(|patch| patch.id).collect();
         let (mut faces, mut patches) = (Vec::new(), Vec::new());
         for (&face, &patch) in volume.boundary.iter().zip(&volume.boundary_patch) {
@@ -229,15 +226,8 @@ impl<'a> RegionCheck<'a> {
 
     /// Regions of the patches that are named after two regions, the smaller id first.
     fn pairs(&self) -> FxHashMap<i32, [i32; 2]> {
-        let named = self.volume.patches.iter().filter_map(|patch| {
-            let rest = patch.name.strip_prefix(INTERFACE)?;
-            let pair = self.regions.iter().find_map(|first| {
-                let second = rest.strip_prefix(&first.name)?.strip_prefix('_')?;
-                Some([first.id, NamedRegion::id_of(self.regions, second)?])
-            });
-            pair.map(|[a, b]| (patch.id, [a.min(b), a.max(b)]))
-        });
-        named.collect()
+        let pair = |patch: &Patch| Some((patch.id, NamedRegion::pair_of(self.regions, &patch.name)?));
+        self.volume.patches.iter().filter_map(pair).collect()
     }
 
     /// Sizes of all regions.

@@ -34,6 +34,8 @@ pub struct NamedRegion {
 impl NamedRegion {
     /// Name of the region inside the vessels.
     pub const LUMEN: &str = "lumen";
+    /// Beginning of the names of interface patches.
+    pub const INTERFACE: &str = "interface_";
 
     /// Region with a name.
     pub fn new(id: i32, name: impl Into<String>) -> Self {
@@ -59,6 +61,24 @@ impl NamedRegion {
             .iter()
             .find(|region| region.id == id)
             .map_or_else(|| Self::numbered(id).name, |found| found.name.clone())
+    }
+
+    /// Regions of a patch that is named `interface_A_B` after two regions, the smaller id first.
+    ///
+    /// ```
+    /// use anastomesh_mesh::NamedRegion;
+    ///
+    /// let regions = [NamedRegion::new(1, "lumen"), NamedRegion::new(2, "wall_2")];
+    /// assert_eq!(NamedRegion::pair_of(&regions, "interface_wall_2_lumen"), Some([1, 2]));
+    /// assert_eq!(NamedRegion::pair_of(&regions, "interface_lumen_tissue"), None);
+    /// ```
+    pub fn pair_of(regions: &[Self], patch: &str) -> Option<[i32; 2]> {
+        let rest = patch.strip_prefix(Self::INTERFACE)?;
+        regions.iter().find_map(|first| {
+            let second = rest.strip_prefix(&first.name)?.strip_prefix('_')?;
+            let second = Self::id_of(regions, second)?;
+            Some([first.id.min(second), first.id.max(second)])
+        })
     }
 
     /// Id of the region with a name.

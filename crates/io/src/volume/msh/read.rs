@@ -225,6 +225,7 @@ impl MshSections {
         if file.notes.regions.is_empty() {
             file.notes.regions = self.regions();
         }
+        self.restore_groups(&mut file.notes.regions);
         let has_regions = !file.notes.regions.is_empty();
         volume.tet_block = self.tets.iter().map(|tet| if has_regions { tet.2 } else { 0 }).collect();
         // Triangles without a group are not a labelled boundary.
@@ -239,6 +240,21 @@ impl MshSections {
             }
         }
         Ok(file)
+    }
+
+    /// Gives tetrahedra without a group their region: physical groups are positive, so that regions with another id have
+    /// none. Several of them are one region after reading.
+    fn restore_groups(&mut self, regions: &mut Vec<NamedRegion>) {
+        if regions.is_empty() || self.tets.iter().all(|tet| tet.2 != 0) {
+            return;
+        }
+        let ids: Vec<i32> = regions.iter().map(|region| region.id).filter(|&id| id <= 0).collect();
+        if let [id] = ids[..] {
+            self.tets.iter_mut().filter(|tet| tet.2 == 0).for_each(|tet| tet.2 = id);
+            return;
+        }
+        regions.retain(|region| region.id > 0);
+        regions.insert(0, NamedRegion::numbered(0));
     }
 
     /// Regions of a file without a list of them. A single group names the whole mesh; several groups are regions.

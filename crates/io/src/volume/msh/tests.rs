@@ -73,6 +73,23 @@ fn regions_become_volumes() {
     }
 }
 
+#[test]
+fn regions_without_a_positive_id_have_no_group() {
+    let (mut volume, mut notes) = labelled_tube(5);
+    for (ids, back) in [([-9, 7], vec![-9, 7]), ([0, 7], vec![0, 7]), ([-9, -3], vec![0])] {
+        volume.tet_block.iter_mut().enumerate().for_each(|(tet, block)| *block = ids[tet % 2]);
+        notes.regions = NamedRegion::all_numbered(ids);
+        for write in WRITERS {
+            let mut bytes = Vec::new();
+            write(&mut bytes, &volume, &notes).unwrap();
+            let file = read(&bytes).unwrap();
+            assert_eq!(file.notes.regions, NamedRegion::all_numbered(back.iter().copied()));
+            let expected = |&block: &i32| if back.contains(&block) { block } else { 0 };
+            assert!(file.volume.tet_block.iter().copied().eq(volume.tet_block.iter().map(expected)), "{ids:?}");
+        }
+    }
+}
+
 /// Height of each point.
 struct PointHeights;
 

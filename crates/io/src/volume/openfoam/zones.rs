@@ -47,7 +47,7 @@ pub(super) fn write(
     folder.put("constant/polyMesh/boundary", case::boundary(&boundary).as_bytes())?;
     folder.put("system/decomposeParDict", case::decompose().as_bytes())?;
     let has_lumen = NamedRegion::id_of(&notes.regions, NamedRegion::LUMEN).is_some();
-    for (name, text) in diffusion::texts(&boundary, &settings, has_lumen) {
+    for (name, text) in diffusion::texts(&boundary, &figures, has_lumen) {
         folder.put(name, text.as_bytes())?;
     }
     Ok(())
