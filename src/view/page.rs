@@ -3,6 +3,7 @@
 use super::chunk::pack_wall;
 use super::faults::FaultGroup;
 use super::pack::Pack;
+use super::scale::Scale;
 use super::wall::Wall;
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::check::CheckReport;
@@ -47,9 +48,9 @@ impl ViewerPage {
         self.facts.insert(name.into(), fact);
     }
 
-    /// Adds the wall of a mesh.
-    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch]) {
-        let fact = pack_wall(wall, &mut self.pack);
+    /// Adds the wall of a mesh, with the scale of its values.
+    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch], values: Option<Scale>) {
+        let fact = pack_wall(wall, values, &mut self.pack);
         self.know("wall", fact);
         let patch = |p: &Patch| json!({ "id": p.id, "name": p.name, "node": p.cap.map(|cap| cap.node) });
         self.know("patches", patches.iter().map(patch).collect());
