@@ -69,7 +69,7 @@ pub(in crate::volume) fn write(
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder, pieces)?;
+    write_index(&mut index, plan.ends.len(), &folder, pieces, &[])?;
     folder.commit(index, path)
 }
 
@@ -80,11 +80,19 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: Pieces) -> io::Result<()> {
+/// Writes the index. `labels` are further integers of cells.
+pub(super) fn write_index(
+    out: &mut impl Write,
+    pieces: usize,
+    folder: &PieceFolder,
+    how: Pieces,
+    labels: &[&'static str],
+) -> io::Result<()> {
     let grid = how.grid;
     let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
     let float = if grid.float32 { "Float32" } else { "Float64" };
-    let columns = how.values.map_or(&[][..], Beside::columns);
+    let mut columns = how.values.map_or(&[][..], Beside::columns).to_vec();
+    columns.extend(labels.iter().map(|name| Column { name, at_points: false, is_integer: true }));
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
@@ -93,8 +101,8 @@ fn write_index(out: &mut impl Write, pieces: usize, folder: &PieceFolder, how: P
          </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
          <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
-        announced(columns, true),
-        announced(columns, false)
+        announced(&columns, true),
+        announced(&columns, false)
     )?;
     for piece in 0..pieces {
         let source = folder.source(piece);

@@ -20,7 +20,7 @@ mod write;
 
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
-pub(super) use mixed::write_mixed;
+pub(super) use mixed::{MixedGrid, write_mixed};
 pub(super) use names::GLOBAL_IDS;
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
