@@ -96,3 +96,29 @@ fn what_cannot_be_drawn_is_said() {
     refused(&fixture("torus.off"), &out, &["--color", "radius"], USAGE, &["--network"]);
     assert!(entries(folder.path()).is_empty());
 }
+
+#[test]
+fn values_of_vessels_have_colours() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let (flow, tree, out) = (at("flow.vtp"), at("tree.vtu"), at("p.png"));
+    assert_code(&run("flow", &[&fixture("tree_30.vtp"), Path::new("-o"), &flow], &["-q", "--inflow", "1e-3"]), FINE);
+    assert_code(&mesh(&fixture("tree_30.vtp"), &tree, &["-q"]), FINE);
+    let drawn = |input: &Path, options: &[&str]| {
+        let made = render(input, &out, options);
+        assert_code(&made, FINE);
+        (picture(&out).1, stderr(&made))
+    };
+    let network = flow.to_str().expect("a path");
+    let (pixels, said) = drawn(&flow, &["--data", "Pressure:Pa"]);
+    assert!(said.contains("Pressure in Pa") && said.contains("(dark violet) to"), "{said}");
+    // The pressure falls from the inlet (yellow) to the outlets (violet).
+    let count = |shade: fn(&[u8; 3]) -> bool| pixels.iter().filter(|p| shade(p)).count();
+    let (yellow, violet) =
+        (count(|[r, g, b]| g > r && *r > b.saturating_add(40)), count(|[r, g, b]| b > r && *r > g.saturating_add(10)));
+    assert!(yellow > 100 && violet > 100, "{yellow} {violet}");
+    let (wall, said) = drawn(&tree, &["--network", network, "--data", "Flow"]);
+    assert!(said.contains("Flow from") && near(&wall, [190, 110, 100]) < 100, "{said}");
+    assert!(wall != drawn(&tree, &["--network", network, "--data", "WallShear"]).0);
+    assert_says(&render(&tree, &out, &["--data", "Flow"]), USAGE, &["--network NETWORK"]);
+}

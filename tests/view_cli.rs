@@ -230,3 +230,34 @@ fn a_browser_shows_it_and_names_what_is_there() {
     let html = shown(&page, &at).expect("a browser");
     assert!(html.contains("vessel (branch)") && html.contains("data-ready="));
 }
+
+#[test]
+fn arrays_of_a_network_are_colours() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let (flow, tree, page) = (at("flow.vtp"), at("tree.vtu"), at("p.html"));
+    let network = flow.to_str().expect("a path");
+    assert_code(
+        &run("flow", &[&fixture("tree_30.vtp"), Path::new("--output"), &flow], &["-q", "--inflow", "1e-3"]),
+        FINE,
+    );
+    assert_code(&mesh(&fixture("tree_30.vtp"), &tree, &["-q"]), FINE);
+    assert_code(&view(&flow, &page, &["-q", "--data", "Flow:mm3/s"]), FINE);
+    let data = &facts(&page)["data"];
+    assert_eq!((&data["name"], &data["unit"]), (&"Flow".into(), &"mm3/s".into()));
+    assert_eq!(data["scale"]["high"], 1e-3);
+    assert_code(&view(&tree, &page, &["-q", "--network", network, "--data", "WallShear:Pa"]), FINE);
+    let known = facts(&page);
+    let arrays = known["arrays"].as_array().expect("arrays");
+    let count = |name: &str| arrays.iter().find(|a| a["name"] == name).map(|a| a["count"].clone());
+    assert!(count("edgeValue") == Some(58.into()) && count("value0") == count("radius0"));
+    let inlet = anastomesh::io::read_mesh(&tree).expect("a mesh").volume.patches[1].cap.expect("the inlet");
+    let inside = inlet.center - inlet.normal * inlet.radius;
+    if let Some(html) = shown(&page, &format!("at={},{},{}", inside.x, inside.y, inside.z)) {
+        assert!(html.contains("<option value=\"value\">WallShear</option>") && html.contains("WallShear in Pa"));
+        assert!(html.contains("\nWallShear ") && html.contains(" Pa\n"), "no value where the page was opened");
+    }
+    assert_says(&view(&tree, &page, &["--data", "Flow"]), USAGE, &["--network NETWORK"]);
+    assert_says(&view(&flow, &page, &["--data", "Speed"]), BAD_INPUT, &["'Speed'", "Pressure, ", "WallShear"]);
+    assert_says(&view(&fixture("tree_30.swc"), &page, &["--data", "Flow"]), USAGE, &["SWC has no named arrays"]);
+}

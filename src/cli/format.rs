@@ -11,7 +11,7 @@ pub struct FormatArgs {
     /// simvascular, npy or tetgen
     #[arg(long, value_name = "FORMAT", value_parser = named)]
     pub format: Option<MeshFormat>,
-    /// Write the prisms and pyramids of layers as whole cells, with their layer as cell data `layer` (VTU and MSH 4.1)
+    /// Write the prisms and pyramids of layers as whole cells, with their layer as cell data `layer` (VTU and PVTU), or without (MSH)
     #[arg(long)]
     pub prisms: bool,
 }
@@ -28,8 +28,8 @@ impl FormatArgs {
             Some(format) => format,
             None => MeshFormat::of(path).map_err(|e| Failure::input(e.to_string()))?,
         };
-        if self.prisms && !matches!(format, MeshFormat::Vtu | MeshFormat::Msh) {
-            return Err(Failure::usage("--prisms is not supported by this format: use .vtu or .msh"));
+        if self.prisms && !matches!(format, MeshFormat::Vtu | MeshFormat::Pvtu | MeshFormat::Msh | MeshFormat::Msh2) {
+            return Err(Failure::usage("--prisms is not supported by this format: use .vtu, .pvtu or .msh"));
         }
         Ok(format)
     }

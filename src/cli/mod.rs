@@ -42,6 +42,7 @@ mod stop;
 mod surface;
 mod tetrahedralize;
 mod units;
+mod values;
 mod view;
 mod work;
 mod wrap;

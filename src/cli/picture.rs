@@ -6,11 +6,12 @@ use std::path::Path;
 use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::above_zero;
+use super::values::{ArrayName, ArrayValues};
 use crate::picture::{
     Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
     PlaneWish, Shown,
 };
-use crate::pipeline::{Datum, VesselData};
+use crate::pipeline::{Datum, EdgeValues, VesselData};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
@@ -36,6 +37,9 @@ pub struct PictureArgs {
     /// Quantity shown by colours (default: patch for a mesh, radius for a network)
     #[arg(long, value_enum)]
     color: Option<Colour>,
+    /// Array of nodes or vessels shown by colours, with the unit of its values: Pressure:Pa
+    #[arg(long, value_name = "NAME[:UNIT]", conflicts_with = "color")]
+    pub data: Option<ArrayName>,
     /// Background
     #[arg(long, value_enum, default_value_t = BackgroundColour::Light)]
     background: BackgroundColour,
@@ -120,12 +124,20 @@ impl PictureArgs {
         }
     }
 
-    /// Draws a network.
-    pub fn network(&self, network: &Skeleton, roots: &[NodeId]) -> Result<(Image, Shown), Failure> {
+    /// Draws a network, with the values of its array if requested.
+    pub fn network(
+        &self,
+        network: &Skeleton,
+        roots: &[NodeId],
+        values: Option<&ArrayValues>,
+    ) -> Result<(Image, Shown), Failure> {
         if self.clip.is_some() {
             return Err(Failure::usage("--clip needs tetrahedra, which a network does not have; use --cut-away"));
         }
-        let picture = NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots)?;
+        let picture = match values {
+            Some(ArrayValues { values, legend }) => NetworkPicture::by_values(network, values, *legend),
+            None => NetworkPicture::new(network, self.color.map_or(Colour::Radius, Colour::from), roots)?,
+        };
         let outline = picture.outline();
         let mut canvas = self.canvas(&outline);
         canvas.cut = self.cut_away.map(|wish| wish.plane(&canvas.camera, &outline));
@@ -133,18 +145,24 @@ impl PictureArgs {
         Ok((canvas.finish(self.background()), picture.shown()))
     }
 
-    /// Draws a mesh, and its network if known.
+    /// Draws a mesh, and its network if known, with the values of its array.
     pub fn mesh(
         &self,
         path: &Path,
         mesh: &dyn MeshSource,
-        network: Option<&Skeleton>,
+        network: Option<(&Skeleton, Option<&ArrayValues>)>,
     ) -> Result<(Image, Shown), Failure> {
+        if self.data.is_some() && network.is_none() {
+            return Err(Failure::usage("--data needs the network with the array: give --network NETWORK"));
+        }
         let failed = |e: io::Error| Failure::input(format!("{}: {e}; run `anastomesh check`", path.display()));
-        let vessels = match (self.datum(), network) {
-            (Some(datum), Some(network)) => {
+        let vessels: Option<(Box<dyn Beside>, Legend)> = match (self.datum(), network) {
+            (_, Some((network, Some(ArrayValues { values, legend })))) => {
+                Some((Box::new(EdgeValues::new(network, values.clone())), *legend))
+            }
+            (Some(datum), Some((network, None))) => {
                 let legend = legend(datum, network, mesh)?;
-                Some((VesselData::new(vec![datum], network, mesh)?, legend))
+                Some((Box::new(VesselData::new(vec![datum], network, mesh)?), legend))
             }
             (Some(datum), None) => {
                 let what = datum.name();
@@ -152,8 +170,8 @@ impl PictureArgs {
             }
             _ => None,
         };
-        let colour = self.color.map_or(Colour::Patch, Colour::from);
-        let values = vessels.as_ref().map(|(data, legend)| (data as &dyn Beside, *legend));
+        let colour = if self.data.is_some() { Colour::Values } else { self.color.unwrap_or(Colour::Patch) };
+        let values = vessels.as_ref().map(|(data, legend)| (data.as_ref(), *legend));
         let shown = Shown { colour, legend: values.map(|(_, legend)| legend) };
         let outline = MeshPicture::outline(mesh).map_err(failed)?;
         let mut canvas = self.canvas(&outline);

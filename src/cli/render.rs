@@ -9,10 +9,13 @@ use super::limits;
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::{PictureArgs, vessels};
-use crate::picture::{Colour, Image, Shown};
+use super::values::{ArrayName, ArrayValues};
+use crate::picture::{Colour, Image, Legend, Shown};
 use crate::report::rows::row;
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_bytes};
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::Skeleton;
 use std::num::NonZeroUsize;
 
 #[derive(Debug, clap::Args)]
@@ -52,7 +55,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     image.write_png(&mut bytes).map_err(unwritable)?;
     write_bytes(&args.output, &bytes).map_err(unwritable)?;
     if !args.quiet {
-        let colours = told(shown).map_or_else(String::new, |colours| row("colours", &colours));
+        let colours =
+            told(shown, args.picture.data.as_ref()).map_or_else(String::new, |colours| row("colours", &colours));
         log::result(&(colours + &ended(&[&args.output]).rows(&[])));
     }
     Ok(Exit::Fine)
@@ -62,35 +66,44 @@ impl Args {
     fn draw(&self) -> Result<(Image, Shown), Failure> {
         let path: &Path = &self.input.network;
         if let Some(left) = left_in(path)? {
-            return self.picture.mesh(path, &left.whole(&()), self.vessels()?.as_ref());
+            return self.draw_mesh(&left.whole(&()));
         }
         match FileKind::of(path, "render")? {
             FileKind::Network => {
                 let (network, roots) = vessels(&self.input)?;
-                self.picture.network(&network, &roots)
+                let values = self.values(&self.input, &network)?;
+                self.picture.network(&network, &roots, values.as_ref())
             }
             FileKind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
-                self.picture.mesh(path, &boundary_of(surface), self.vessels()?.as_ref())
+                self.draw_mesh(&boundary_of(surface))
             }
             FileKind::Mesh => {
                 let mut opened = OpenedMesh::open(path, self.memory)?;
                 opened.label_boundary();
-                self.picture.mesh(path, opened.source(), self.vessels()?.as_ref())
+                self.draw_mesh(opened.source())
             }
         }
     }
 
-    /// Network of the mesh, if given.
-    fn vessels(&self) -> Result<Option<anastomesh_skeleton::Skeleton>, Failure> {
-        let Some(network) = &self.made_of else { return Ok(None) };
+    /// Draws a mesh, with its network if given.
+    fn draw_mesh(&self, mesh: &dyn MeshSource) -> Result<(Image, Shown), Failure> {
+        let path: &Path = &self.input.network;
+        let Some(network) = &self.made_of else { return self.picture.mesh(path, mesh, None) };
         let args = NetworkArgs { network: network.clone(), ..self.input.clone() };
-        Ok(Some(vessels(&args)?.0))
+        let network = vessels(&args)?.0;
+        let values = self.values(&args, &network)?;
+        self.picture.mesh(path, mesh, Some((&network, values.as_ref())))
+    }
+
+    /// Values of the requested array.
+    fn values(&self, args: &NetworkArgs, network: &Skeleton) -> Result<Option<ArrayValues>, Failure> {
+        self.picture.data.as_ref().map(|array| ArrayValues::read(args, array, network)).transpose()
     }
 }
 
 /// Text on the meaning of the colours.
-fn told(shown: Shown) -> Option<String> {
+fn told(shown: Shown, data: Option<&ArrayName>) -> Option<String> {
     let scale =
         |what: &str| shown.legend.map(|l| format!("{what} from {:.4} (dark violet) to {:.4} (yellow)", l.low, l.high));
     match shown.colour {
@@ -98,6 +111,12 @@ fn told(shown: Shown) -> Option<String> {
         Colour::Order => scale("Strahler order"),
         Colour::Quality => Some("radius ratio from 0 (red) to 1 (blue)".into()),
         Colour::Patch => Some("wall red, inlets blue, outlets yellow, interior cream".into()),
+        Colour::Values => {
+            let Legend { low, high, logarithmic } = shown.legend?;
+            let logarithmic = if logarithmic { " (logarithmic)" } else { "" };
+            let title = data?.title();
+            Some(format!("{title}{logarithmic} from {low:.4e} (dark violet) to {high:.4e} (yellow); none: grey"))
+        }
         Colour::Plain | Colour::Block => None,
     }
 }

@@ -13,9 +13,11 @@ use super::limits;
 use super::log;
 use super::network::NetworkArgs;
 use super::picture::vessels;
+use super::values::{ArrayName, ArrayValues};
 use crate::block::BlockDump;
-use crate::pipeline::{Datum, VesselData};
-use crate::view::{FaultGroup, ViewerPage, Wall, WallOptions, add_network, add_tets};
+use crate::picture::Legend;
+use crate::pipeline::{Datum, EdgeValues, VesselData};
+use crate::view::{FaultGroup, Scale, ViewerPage, Wall, WallOptions, add_network, add_tets, add_values};
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::NamedRegion;
@@ -36,6 +38,9 @@ pub struct Args {
     /// Network of the mesh, for colours by radius and order, and for names of vessels and nodes
     #[arg(long = "network", value_name = "NETWORK")]
     made_of: Option<PathBuf>,
+    /// Array of nodes or vessels shown by colours, with the unit of its values: Pressure:Pa
+    #[arg(long, value_name = "NAME[:UNIT]")]
+    data: Option<ArrayName>,
     /// Folder with dumps of failed blocks (default: the input with `.failed` appended, if it exists)
     #[arg(long, value_name = "DIR")]
     dump_dir: Option<PathBuf>,
@@ -92,6 +97,7 @@ impl Args {
                 let (network, inlets) = vessels(&self.input)?;
                 faults.extend(FaultGroup::of_overlaps(&network));
                 know_network(&mut page, &network, &inlets)?;
+                self.add_values(&mut page, &self.input, &network)?;
             }
             FileKind::Surface => {
                 let surface = read_surface(path).map_err(|e| Failure::input(e.to_string()))?;
@@ -135,13 +141,23 @@ impl Args {
     ) -> Result<Option<FaultGroup>, Failure> {
         let path = self.input.network.display();
         let failed = |e: io::Error| Failure::input(format!("{path}: {e}; run `anastomesh check`"));
-        let network = match &self.made_of {
-            Some(network) => Some(vessels(&NetworkArgs { network: network.clone(), ..self.input.clone() })?),
-            None => None,
-        };
+        let args = self.made_of.clone().map(|network| NetworkArgs { network, ..self.input.clone() });
+        let network = args.as_ref().map(vessels).transpose()?;
+        if self.data.is_some() && network.is_none() {
+            return Err(Failure::usage("--data needs the network with the array: give --network NETWORK"));
+        }
         let data = |(network, _): &(Skeleton, _)| VesselData::new(vec![Datum::Radius, Datum::Strahler], network, mesh);
         let data = network.as_ref().map(data).transpose()?;
-        let options = WallOptions { vessels: data.as_ref().map(|data| data as _) };
+        let array = match args.as_ref().zip(network.as_ref()) {
+            Some((args, (network, _))) => self
+                .add_values(page, args, network)?
+                .map(|(found, scale)| (EdgeValues::new(network, found.values), scale)),
+            None => None,
+        };
+        let options = WallOptions {
+            vessels: data.as_ref().map(|data| data as _),
+            values: array.as_ref().map(|(values, _)| values as _),
+        };
         let wall = Wall::of(mesh, &options).map_err(failed)?;
         if wall.triangles() == 0 {
             return Err(Failure::input(format!("{path}: the mesh has no boundary to show")));
@@ -149,11 +165,27 @@ impl Args {
         let tets = add_tets(mesh, &wall, !regions.is_empty(), &mut page.pack).map_err(failed)?;
         page.know("tets", tets);
         let missing = FaultGroup::of_missing(&wall, mesh.patches());
-        page.add_wall(wall, mesh.patches(), regions);
+        page.add_wall(wall, mesh.patches(), regions, array.map(|(_, scale)| scale));
         if let Some((network, inlets)) = &network {
             know_network(page, network, inlets)?;
         }
         Ok(missing)
+    }
+
+    /// Adds the requested array of a network, and returns its values with their scale.
+    fn add_values(
+        &self,
+        page: &mut ViewerPage,
+        args: &NetworkArgs,
+        network: &Skeleton,
+    ) -> Result<Option<(ArrayValues, Scale)>, Failure> {
+        let Some(array) = &self.data else { return Ok(None) };
+        let found = ArrayValues::read(args, array, network)?;
+        let Legend { low, high, logarithmic } = found.legend;
+        let scale = Scale { low, high, logarithmic };
+        add_values(&found.values, scale, &mut page.pack);
+        page.know("data", serde_json::json!({ "name": array.name, "unit": array.unit, "scale": scale }));
+        Ok(Some((found, scale)))
     }
 
     /// Failed blocks, from their dumps.

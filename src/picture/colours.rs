@@ -21,6 +21,9 @@ pub enum Colour {
     Order,
     /// Quality of the cells, from bad to good.
     Quality,
+    /// Values of an array of the network.
+    #[cfg_attr(feature = "cli", value(skip))]
+    Values,
 }
 
 /// Background of a picture.
@@ -58,6 +61,8 @@ const OTHERS: [Rgb; 6] =
     [[38, 101, 178], [236, 180, 64], [62, 150, 110], [150, 96, 170], [90, 170, 205], [140, 140, 140]];
 /// Cells of bad to good quality.
 const QUALITY: [Rgb; 5] = [[165, 0, 38], [244, 109, 67], [254, 224, 139], [102, 189, 160], [40, 110, 170]];
+/// Places without a value.
+const UNKNOWN: Rgb = [150, 150, 150];
 /// Viridis colour map, in steps of an eighth.
 const VIRIDIS: [Rgb; 9] = [
     [68, 1, 84],
@@ -129,6 +134,9 @@ impl Legend {
 
     /// The colour of a value.
     pub fn colour(&self, value: f64) -> Rgb {
+        if value.is_nan() {
+            return UNKNOWN;
+        }
         let place = |x: f64| if self.logarithmic { x.max(f64::MIN_POSITIVE).ln() } else { x };
         let (low, high) = (place(self.low), place(self.high));
         let share = if high > low { (place(value) - low) / (high - low) } else { 0.5 };
@@ -147,6 +155,7 @@ mod tests {
         assert_eq!((legend.low, legend.high), (3.0, 300.0));
         assert_eq!(legend.colour(-1.0), legend.colour(3.0));
         assert_ne!(legend.colour(30.0), legend.colour(300.0));
+        assert_eq!(legend.colour(f64::NAN), UNKNOWN);
         assert_eq!(Legend::of(std::iter::empty(), false).colour(7.0), Legend::of([2.0].into_iter(), false).colour(2.0));
         assert_eq!([of_quality(f64::NAN), of_quality(-1.0), of_quality(2.0)], [QUALITY[0], QUALITY[0], QUALITY[4]]);
         assert_ne!(of_block(0), of_block(1));

@@ -140,7 +140,7 @@ impl MeshPicture<'_> {
         let patches = self.mesh.patches();
         let each = |colour: &dyn Fn(usize) -> Rgb| (0..corners.len()).map(colour).collect();
         match (self.colour, &self.values) {
-            (Colour::Radius | Colour::Order, Some((beside, legend))) => {
+            (Colour::Radius | Colour::Order | Colour::Values, Some((beside, legend))) => {
                 // Cells use the interpolated point values at their centres.
                 let values = if beside.columns().first().is_some_and(|column| column.at_points) {
                     beside.at_points(0, &corners.iter().map(middle).collect::<Vec<_>>())
@@ -160,7 +160,7 @@ impl MeshPicture<'_> {
         match (self.colour, &self.values) {
             (Colour::Block, _) => of_block(open.block),
             (Colour::Quality, _) => of_quality(open.ratio),
-            (Colour::Radius | Colour::Order, Some((beside, legend))) => {
+            (Colour::Radius | Colour::Order | Colour::Values, Some((beside, legend))) => {
                 let values = if beside.columns().first().is_some_and(|column| column.at_points) {
                     beside.at_points(0, &[middle(&open.corners)])
                 } else {

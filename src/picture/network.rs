@@ -52,9 +52,17 @@ impl<'a> NetworkPicture<'a> {
                 let branches = network.branches(&network.adjacency());
                 (None, branches.of_edge.iter().map(|(branch, _)| [of_block(branch.0 as i32); 2]).collect())
             }
-            Colour::Plain | Colour::Patch | Colour::Quality => (None, vec![[WALL_COLOURS[0]; 2]; network.edges.len()]),
+            Colour::Plain | Colour::Patch | Colour::Quality | Colour::Values => {
+                (None, vec![[WALL_COLOURS[0]; 2]; network.edges.len()])
+            }
         };
         Ok(Self { network, colours, shown: Shown { colour, legend } })
+    }
+
+    /// Prepares a network with values at both ends of its edges.
+    pub fn by_values(network: &'a Skeleton, values: &[[f64; 2]], legend: Legend) -> Self {
+        let colours = values.iter().map(|ends| ends.map(|x| legend.colour(x))).collect();
+        Self { network, colours, shown: Shown { colour: Colour::Values, legend: Some(legend) } }
     }
 
     /// Draws some edges in the marker colour.

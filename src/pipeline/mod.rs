@@ -37,6 +37,7 @@ mod terminals;
 mod tests;
 mod timing;
 mod tips;
+mod values;
 mod whole;
 
 pub use caps::{CapRow, Caps, CapsError, Outlets};
@@ -65,4 +66,5 @@ pub(crate) use store::{KeyMaker, fingerprint};
 pub use terminals::NotATerminal;
 pub use timing::Clock;
 pub use timing::StageTime;
+pub use values::EdgeValues;
 pub use whole::{LeftWhole, Whole};

@@ -27,7 +27,8 @@ pub enum OutletKind {
 }
 
 impl OutletKind {
-    /// Default proximal part of the resistance of an RCR model, a usual value for systemic arteries.
+    /// Default proximal part of the resistance of an RCR model. Source: `SimVascular`'s guide to coronary models, section
+    /// 'Aortic outflow boundary condition': a distal resistance of about ten times the proximal one, hence 0.91 and 0.09.
     pub const PROXIMAL_FRACTION: f64 = 0.09;
 
     fn name(&self) -> &'static str {

@@ -1,6 +1,7 @@
 //! Chunks of nearby wall pieces, so that off-screen parts are not drawn.
 
 use super::pack::{Pack, QuantizationGrid};
+use super::scale::Scale;
 use super::wall::{BlockWall, Group, Wall};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::hilbert::hilbert_key;
@@ -19,12 +20,15 @@ struct ChunkHeader {
     groups: usize,
 }
 
-/// Packs a wall and returns the metadata for the page.
-pub fn pack_wall(wall: Wall, pack: &mut Pack) -> serde_json::Value {
+/// Largest code of a colour, above the first.
+const CODES: f64 = 254.0;
+
+/// Packs a wall, with its values on their scale, and returns the metadata for the page.
+pub fn pack_wall(wall: Wall, values: Option<Scale>, pack: &mut Pack) -> serde_json::Value {
     let Wall { mut pieces, exact, faces } = wall;
     let radii = pieces.iter().flat_map(|p| &p.groups).flat_map(|g| &g.radii).filter(|r| **r > 0.0);
     let [low, high] = radii.fold([f64::INFINITY, 0.0_f64], |[l, h], &r| [l.min(r), h.max(r)]);
-    let scale = RadiusScale { low, high };
+    let scales = [Some(Scale { low, high, logarithmic: true }), values];
     let all = QuantizationGrid::of(pieces.iter().filter_map(|p| p.groups.first()?.points.first()), 1 << 16);
     let place = |piece: &BlockWall| {
         let first = piece.groups.first().and_then(|g| g.points.first()).copied().unwrap_or_else(Point3::origin);
@@ -41,29 +45,18 @@ pub fn pack_wall(wall: Wall, pack: &mut Pack) -> serde_json::Value {
             fits
         });
         let rest = pieces.split_off(count.count());
-        heads.push(pack_chunk(heads.len(), std::mem::replace(&mut pieces, rest), &scale, pack));
+        heads.push(pack_chunk(heads.len(), std::mem::replace(&mut pieces, rest), scales, pack));
     }
     serde_json::json!({ "exact": exact, "faces": faces, "chunks": heads,
         "radii": (low <= high).then_some([low, high]) })
 }
 
-struct RadiusScale {
-    low: f64,
-    high: f64,
-}
-
-impl RadiusScale {
-    /// Logarithmic code of a radius, 1 to 255; 0 if unknown.
-    fn step(&self, radius: f64) -> i32 {
-        if radius <= 0.0 || self.low > self.high {
-            return 0;
-        }
-        let ratio = (self.high / self.low).ln();
-        if ratio > 0.0 { 1 + (254.0 * (radius / self.low).ln() / ratio).clamp(0.0, 254.0) as i32 } else { 128 }
-    }
-}
-
-fn pack_chunk(number: usize, mut pieces: Vec<BlockWall>, scale: &RadiusScale, pack: &mut Pack) -> ChunkHeader {
+fn pack_chunk(
+    number: usize,
+    mut pieces: Vec<BlockWall>,
+    [radius, value]: [Option<Scale>; 2],
+    pack: &mut Pack,
+) -> ChunkHeader {
     // Sorted by radius, because the page draws thick pieces as faces and thin ones as lines.
     pieces.sort_by(|a, b| b.radius.total_cmp(&a.radius).then(a.block.cmp(&b.block)));
     let groups: Vec<(&BlockWall, &Group)> = pieces.iter().flat_map(|p| p.groups.iter().map(move |g| (p, g))).collect();
@@ -83,8 +76,13 @@ fn pack_chunk(number: usize, mut pieces: Vec<BlockWall>, scale: &RadiusScale, pa
         groups.iter().flat_map(|(_, g)| of(g).iter().map(|&x| i32::from(x))).collect()
     };
     add("quality", &bytes(|g| &g.quality), 1);
-    let radii: Vec<i32> = groups.iter().flat_map(|(_, g)| g.radii.iter().map(|&r| scale.step(r))).collect();
-    add("radius", &radii, 1);
+    let codes = |scale: Scale, of: fn(&Group) -> &[f64]| -> Vec<i32> {
+        groups.iter().flat_map(|(_, g)| of(g).iter().map(|&x| scale.code(x, CODES))).collect()
+    };
+    add("radius", &radius.map_or_else(Vec::new, |scale| codes(scale, |g| &g.radii)), 1);
+    if let Some(scale) = value {
+        add("value", &codes(scale, |g| &g.values), 1);
+    }
     add("order", &bytes(|g| &g.orders), 1);
     let of_groups = |of: &dyn Fn(&(&BlockWall, &Group)) -> i32| -> Vec<i32> { groups.iter().map(of).collect() };
     add("groupBlock", &of_groups(&|(p, _)| p.block), 1);

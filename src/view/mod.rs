@@ -12,12 +12,14 @@ mod pack;
 mod page;
 mod quadric;
 mod rings;
+mod scale;
 mod tets;
 mod tube;
 mod wall;
 
 pub use faults::FaultGroup;
-pub use network::add_network;
+pub use network::{add_network, add_values};
 pub use page::ViewerPage;
+pub use scale::Scale;
 pub use tets::add_tets;
 pub use wall::{Wall, WallOptions};

@@ -1,6 +1,7 @@
 //! Networks in the viewer: displayed, or used to look up the vessel of a mesh point.
 
 use super::pack::{Pack, QuantizationGrid};
+use super::scale::Scale;
 use anastomesh_network::flow::{NotConverged, Orders};
 use anastomesh_skeleton::{NodeId, Skeleton};
 
@@ -25,4 +26,10 @@ pub fn add_network(network: &Skeleton, inlets: &[NodeId], pack: &mut Pack) -> Re
     let narrowest = network.edges.iter().flat_map(|e| e.radii).fold(widest, f64::min);
     Ok(serde_json::json!({ "grid": grid, "radiusStep": step, "radii": [narrowest, widest],
         "orders": orders.iter().max(), "edges": network.edges.len() }))
+}
+
+/// Packs the values at both ends of each edge of the network.
+pub fn add_values(values: &[[f64; 2]], scale: Scale, pack: &mut Pack) {
+    let codes: Vec<i32> = values.as_flattened().iter().map(|&x| scale.code(x, f64::from(STEPS))).collect();
+    pack.add("edgeValue", &codes, 2);
 }

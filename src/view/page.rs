@@ -3,6 +3,7 @@
 use super::chunk::pack_wall;
 use super::faults::FaultGroup;
 use super::pack::Pack;
+use super::scale::Scale;
 use super::wall::Wall;
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::verdict;
@@ -47,9 +48,10 @@ impl ViewerPage {
         self.facts.insert(name.into(), fact);
     }
 
-    /// Adds the wall of a mesh, and its regions, which are blocks. An interface belongs to the region with the smaller id.
-    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch], regions: &[NamedRegion]) {
-        let fact = pack_wall(wall, &mut self.pack);
+    /// Adds the wall of a mesh, with its regions and the scale of its values. Regions are blocks; an interface belongs to
+    /// the region with the smaller id.
+    pub fn add_wall(&mut self, wall: Wall, patches: &[Patch], regions: &[NamedRegion], values: Option<Scale>) {
+        let fact = pack_wall(wall, values, &mut self.pack);
         self.know("wall", fact);
         let patch = |p: &Patch| {
             let beyond = NamedRegion::pair_of(regions, &p.name).map(|[_, beyond]| beyond);

@@ -38,11 +38,16 @@ function patchSwatches(ids) {
 /** Legend of the colours by a quantity. */
 function legendOf(quantity, scene) {
   const shades = Array.from({ length: 9 }, (_, i) => viridis(i / 8));
-  const inside = facts.tets && facts.tets.shown > 0 && regions.size === 0 && ["patch", "radius", "order"].includes(quantity)
+  const inside = facts.tets && facts.tets.shown > 0 && regions.size === 0 && ["patch", "radius", "order", "value"].includes(quantity)
     ? [swatch(PALETTE.inside, "clipped tetrahedra")] : [];
   if (quantity === "radius") {
     const [low, high] = (facts.wall || facts.network).radii;
     return [...colourBar(shades, [low, Math.sqrt(low * high), high].map(x => number(x, 3)), `Vessel radius${facts.unit ? ` in ${facts.unit}` : ""} (logarithmic)`), ...inside];
+  }
+  if (quantity === "value") {
+    const { name, unit, scale: { low, high, logarithmic } } = facts.data;
+    const labels = [low, logarithmic ? Math.sqrt(low * high) : (low + high) / 2, high].map(x => number(x, 3));
+    return [...colourBar(shades, labels, `${name}${unit ? ` in ${unit}` : ""}${logarithmic ? " (logarithmic)" : ""}`), ...inside];
   }
   if (quantity === "order") {
     const most = facts.network.orders, colours = Array.from({ length: most }, (_, i) => viridis(most > 1 ? i / (most - 1) : 0.5));
@@ -110,7 +115,8 @@ function fillPanel(viewer) {
     : [count(facts.network.edges, "edge")];
   $("counts").textContent = sizes.join(", ");
   const quantities = wall ? [...(regions.size > 0 ? ["region"] : []), "patch", ...(regions.size > 0 ? [] : ["block"]), "quality", ...(facts.wall.radii ? ["radius", "order"] : [])] : ["radius", "order", "vessel"];
-  $("colour").append(...quantities.map(name => make("option", { textContent: name, value: name === "vessel" ? "block" : name })));
+  if (facts.data) quantities.unshift("value");
+  $("colour").append(...quantities.map(name => make("option", { textContent: name === "value" ? facts.data.name : name, value: name === "vessel" ? "block" : name })));
   $("edges").checked = !!wall && facts.wall.exact && wall.triangles < 60000;
   $("edges-label").hidden = !wall;
   $("tets").hidden = !(tets && facts.tets.shown < facts.tets.all);

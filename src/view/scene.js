@@ -1,7 +1,7 @@
 // Scene: chunks of a wall or cones of a network, with their colours.
 
 const WALL = 1;
-const PALETTE = { wall: [206, 122, 110], inlet: [38, 101, 178], outlet: [236, 180, 64], inside: [238, 224, 198] };
+const PALETTE = { wall: [206, 122, 110], inlet: [38, 101, 178], outlet: [236, 180, 64], inside: [238, 224, 198], unknown: [150, 150, 150] };
 const OTHERS = [[38, 101, 178], [236, 180, 64], [62, 150, 110], [150, 96, 170], [90, 170, 205], [140, 140, 140]];
 const QUALITY = [[165, 0, 38], [244, 109, 67], [254, 224, 139], [102, 189, 160], [40, 110, 170]];
 const VIRIDIS = [[68, 1, 84], [71, 45, 123], [59, 82, 139], [44, 114, 142], [33, 145, 140], [40, 174, 128], [94, 201, 98],
@@ -11,6 +11,9 @@ function interpolate(scale, share) {
   const at = Math.min(Math.max(share, 0), 1) * (scale.length - 1), i = Math.min(Math.floor(at), scale.length - 2);
   return [0, 1, 2].map(k => Math.round(scale[i][k] + (at - i) * (scale[i + 1][k] - scale[i][k])));
 }
+
+/** Colour of a code from 1 to `most`; 0 is a place without a value. */
+const valueColour = (code, most) => code === 0 ? PALETTE.unknown : viridis((code - 1) / (most - 1));
 
 const viridis = share => interpolate(VIRIDIS, 0.06 + 0.86 * share);
 
@@ -86,7 +89,7 @@ class Walls {
     const chunk = { names, corners, position, count, first, ends, origin, size: 65535 * step, line,
       radii: Float64Array.from(pieces, r => r / 16 * step), lineNames: Uint32Array.from(lineNames),
       all: { corners, ends: ends.faces, faces, groups: ofPieces },
-      quality: get("quality"), radius: get("radius"), order: get("order") };
+      quality: get("quality"), radius: get("radius"), order: get("order"), value: get("value") };
     chunk.box = bounds(position, origin, step);
     const normals = vertexNormals(position, corners);
     chunk.faces = gl.createVertexArray();
@@ -133,7 +136,7 @@ class Walls {
     }
   }
 
-  /** Colours the wall by patch, region, block, quality, radius or order. */
+  /** Colours the wall by patch, region, block, quality, radius, order or value. */
   colour(what) {
     const gl = this.gl;
     const most = facts.network ? facts.network.orders : 1;
@@ -141,9 +144,10 @@ class Walls {
     const scale = (make, n = 256) => Array.from({ length: n }, (_, i) => make(i));
     const table = what === "quality" ? scale(q => interpolate(QUALITY, q / 255))
       : what === "radius" ? scale(r => viridis((r - 1) / 254))
+      : what === "value" ? scale(v => valueColour(v, 255))
       : what === "order" ? scale(o => viridis(Math.max(orders, most) > 1 ? (o - 1) / (Math.max(orders, most) - 1) : 0.5)) : null;
     for (const chunk of this.chunks) {
-      const of = what === "quality" ? chunk.quality : what === "radius" ? chunk.radius : chunk.order;
+      const of = what === "quality" ? chunk.quality : what === "radius" ? chunk.radius : what === "value" ? chunk.value : chunk.order;
       const ofGroup = name => what === "block" ? blockColour(this.groups.block[name - 1])
         : what === "region" ? regionColour(this.groups.block[name - 1])
         : what === "patch" ? patchColour(this.groups.patch[name - 1]) : PALETTE.wall;
@@ -290,6 +294,9 @@ function vertexNormals(position, corners) {
   return out;
 }
 
+/** Largest code of the value of an edge, minus 1. */
+const VALUE_STEPS = 1 << 20;
+
 /** Network arrays, for drawing and for queries. */
 class Network {
   constructor(array) {
@@ -300,6 +307,21 @@ class Network {
     this.radii = Float64Array.from(array("edgeRadius"), r => r * radiusStep);
     this.orders = array("edgeOrder");
     this.branches = array("edgeBranch");
+    this.values = array("edgeValue");
+  }
+
+  /** Code of the value of an edge at a parameter; 0 without a value. */
+  valueCode(edge, t) {
+    const [a, b] = [this.values[2 * edge], this.values[2 * edge + 1]];
+    return a === 0 || b === 0 ? 0 : a + t * (b - a);
+  }
+
+  /** Value of the array at a point of an edge, with name and unit. */
+  value(edge, t) {
+    const { name, unit, scale: { low, high, logarithmic } } = facts.data;
+    const code = this.valueCode(edge, t), share = (code - 1) / VALUE_STEPS;
+    const value = logarithmic ? low * (high / low) ** share : low + share * (high - low);
+    return `\n${name} ${code === 0 ? "unknown" : `${number(value, 4)}${unit ? ` ${unit}` : ""}`}`;
   }
 
   node(i) { return [this.nodes[3 * i], this.nodes[3 * i + 1], this.nodes[3 * i + 2]]; }
@@ -323,7 +345,7 @@ class Network {
   describe({ edge, t, radius }) {
     const ends = [0, 1].map(k => this.names[this.edges[2 * edge + k]]);
     return `vessel (branch) ${this.branches[edge]}, order ${this.orders[edge]}\nedge ${ends[0]}–${ends[1]}, nearest node ` +
-      `${ends[t > 0.5 ? 1 : 0]}\nradius ${withUnit(number(radius))}`;
+      `${ends[t > 0.5 ? 1 : 0]}\nradius ${withUnit(number(radius))}${facts.data ? this.value(edge, t) : ""}`;
   }
 }
 
@@ -407,6 +429,7 @@ class Cones {
       const radius = (network.radii[2 * e] + network.radii[2 * e + 1]) / 2;
       const colour = what === "radius" ? viridis(high > low ? Math.log(radius / low) / Math.log(high / low) : 0.5)
         : what === "order" ? viridis(most > 1 ? (network.orders[e] - 1) / (most - 1) : 0.5)
+        : what === "value" ? valueColour(network.valueCode(e, 0.5), VALUE_STEPS + 1)
         : what === "block" ? blockColour(network.branches[e]) : PALETTE.wall;
       out.set(colour, 4 * i);
       out[4 * i + 3] = 255;

@@ -29,6 +29,8 @@ const SIDES: [f64; 2] = [3.0, 24.0];
 pub struct WallOptions<'a> {
     /// Vessel radius at points in the first column, Strahler order of cells in the second.
     pub vessels: Option<&'a dyn Beside>,
+    /// Values at points in the first column.
+    pub values: Option<&'a dyn Beside>,
 }
 
 /// Faces of a block on one patch.
@@ -43,6 +45,8 @@ pub struct Group {
     pub radii: Vec<f64>,
     /// Strahler order at each point.
     pub orders: Vec<u8>,
+    /// Value at each point, if requested.
+    pub values: Vec<f64>,
 }
 
 /// Wall of a block.
@@ -227,6 +231,9 @@ impl Local {
             let places: Vec<[Point3; 3]> = group.points.iter().map(|&p| [p; 3]).collect();
             group.radii = vessels.at_points(0, &group.points);
             group.orders = vessels.in_faces(1, &places).iter().map(|&o| o.clamp(0.0, 255.0) as u8).collect();
+        }
+        if let Some(values) = options.values {
+            group.values = values.at_points(0, &group.points);
         }
         group
     }

@@ -4,6 +4,7 @@
 
 use super::source::{FacePiece, MeshSource, miscounted};
 use super::{TET_FACES, face_key};
+use std::borrow::Cow;
 use std::io;
 
 /// A face between two tetrahedra.
@@ -64,8 +65,6 @@ struct Sorted {
     labelled: Vec<(u32, i32)>,
     /// Handles of other faces.
     open: Vec<u32>,
-    /// Labels of the part without a face in it.
-    strays: Vec<Loose>,
 }
 
 impl<'a> Faces<'a> {
@@ -74,7 +73,7 @@ impl<'a> Faces<'a> {
     /// # Errors
     /// Errors of reading the mesh; `InvalidData` if a face has more than two sides, or one side and no patch.
     pub fn of(mesh: &'a dyn MeshSource) -> io::Result<Self> {
-        Self::look(mesh, |sorted| (sorted.loose(), ()), |_, ()| Ok(()))
+        Self::look(mesh, false, |_, _| Ok(()))
     }
 
     /// Passes on the boundary faces labelled in their own part, in order, reading tetrahedra and boundary once. Returns
@@ -89,22 +88,18 @@ impl<'a> Faces<'a> {
     ) -> io::Result<bool> {
         let counts = mesh.counts();
         let (mut inner, mut outer) = (0, 0);
-        let faces = Self::look(
-            mesh,
-            |sorted| (sorted.loose(), (sorted.pairs.len(), sorted.outer(0))),
-            |first, (pairs, mut faces)| {
-                inner += pairs;
-                outer += faces.len();
-                // Writers have announced the number of faces before.
-                if outer > counts.boundary {
-                    return Err(miscounted());
-                }
-                for face in &mut faces {
-                    face.tet += first;
-                }
-                each(&faces)
-            },
-        )?;
+        let faces = Self::look(mesh, true, |first, mut ends| {
+            inner += ends.pairs;
+            outer += ends.outer.len();
+            // Writers have announced the number of faces before.
+            if outer > counts.boundary {
+                return Err(miscounted());
+            }
+            for face in &mut ends.outer {
+                face.tet += first;
+            }
+            each(&ends.outer)
+        })?;
         let apart = faces.known.iter().filter(|(_, _, side)| matches!(side, Side::Patch(_))).count();
         inner += faces.known.len() - apart;
         if outer + apart != counts.boundary || 2 * inner + counts.boundary != 4 * counts.tets {
@@ -114,25 +109,26 @@ impl<'a> Faces<'a> {
     }
 
     /// Reads all parts and collects their unpaired faces. `each` receives the number of the first tetrahedron of each
-    /// part and the additional result of `take`.
-    fn look<T: Send>(
+    /// part and its ends, with boundary faces if `labelled`.
+    fn look(
         mesh: &'a dyn MeshSource,
-        take: impl Fn(&Sorted) -> (Vec<Loose>, T) + Sync,
-        mut each: impl FnMut(u32, T) -> io::Result<()>,
+        labelled: bool,
+        mut each: impl FnMut(u32, Ends) -> io::Result<()>,
     ) -> io::Result<Self> {
         let (mut first, mut tets) = (Vec::with_capacity(mesh.parts() as usize), 0_u32);
         let mut loose: Vec<Loose> = Vec::new();
         mesh.each_part(
-            |part| Sorted::read(mesh, part).map(|sorted| (sorted.tets.len(), take(&sorted))),
-            |(count, (found, taken))| {
-                loose.extend(found.into_iter().map(|(key, side)| match side {
+            |part| Ends::read(mesh, part, labelled),
+            |mut ends| {
+                let count = ends.tets;
+                loose.extend(std::mem::take(&mut ends.loose).into_iter().map(|(key, side)| match side {
                     Side::Tet(tet) => (key, Side::Tet(tets + tet)),
                     patch @ Side::Patch(_) => (key, patch),
                 }));
                 first.push(tets);
                 let start = tets;
                 tets = u32::try_from(count).ok().and_then(|count| tets.checked_add(count)).ok_or_else(miscounted)?;
-                each(start, taken)
+                each(start, ends)
             },
         )?;
         loose.sort_unstable();
@@ -159,11 +155,11 @@ impl<'a> Faces<'a> {
         for &handle in &sorted.open {
             match self.other_side(&sorted, first, handle) {
                 Some(Side::Tet(other)) => faces.inner.push(inner(handle, [first + (handle >> 2), other])),
-                Some(Side::Patch(patch)) => faces.outer.push(sorted.outer_face(first, handle, patch)),
+                Some(Side::Patch(patch)) => faces.outer.push(outer_face(&sorted.tets, first, handle, patch)),
                 None => {}
             }
         }
-        faces.inner.sort_unstable();
+        faces.inner = by_lower_tet(&faces.inner, first, sorted.tets.len());
         faces.outer.sort_unstable();
         Ok(faces)
     }
@@ -206,6 +202,27 @@ impl<'a> Faces<'a> {
         )?;
         if sides == 4 * counts.tets && labelled == counts.boundary { Ok(()) } else { Err(miscounted()) }
     }
+}
+
+/// Sorts faces whose lower tetrahedra are `count` from `first` on.
+fn by_lower_tet(faces: &[InnerFace], first: u32, count: usize) -> Vec<InnerFace> {
+    let mut ends = vec![0_u32; count + 1];
+    faces.iter().for_each(|face| ends[(face.tets[0] - first) as usize + 1] += 1);
+    for i in 1..ends.len() {
+        ends[i] += ends[i - 1];
+    }
+    let mut sorted = vec![InnerFace { tets: [0; 2], vertices: [0; 3] }; faces.len()];
+    for &face in faces {
+        let end = &mut ends[(face.tets[0] - first) as usize];
+        sorted[*end as usize] = face;
+        *end += 1;
+    }
+    let mut start = 0;
+    for &end in &ends[..count] {
+        sorted[start..end as usize].sort_unstable();
+        start = end as usize;
+    }
+    sorted
 }
 
 /// Both sides of each unpaired face; the input is sorted.
@@ -274,19 +291,27 @@ fn buckets(sides: &[u128]) -> (Vec<u128>, Vec<u32>) {
     (sorted, ends)
 }
 
+/// Tetrahedra and labels of a part. Handles have 31 bits: the last one marks labels.
+fn read_part(mesh: &dyn MeshSource, part: u32) -> io::Result<(Cow<'_, [[u32; 4]]>, FacePiece<'_>)> {
+    let (tets, labels) = (mesh.tets(part)?.tets, mesh.boundary(part)?);
+    if tets.len() >= (LABEL / 4) as usize || labels.faces.len() >= LABEL as usize {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^29 tetrahedra"));
+    }
+    Ok((tets, labels))
+}
+
+/// Patch of the label with this handle.
+fn patch_of(labels: &FacePiece, handle: u32) -> i32 {
+    labels.patches.get((handle & !LABEL) as usize).copied().unwrap_or(0)
+}
+
 impl Sorted {
     fn read(mesh: &dyn MeshSource, part: u32) -> io::Result<Self> {
-        let tets = mesh.tets(part)?.tets.into_owned();
-        let FacePiece { faces, patches, .. } = mesh.boundary(part)?;
-        // Handles have 31 bits: the last one marks labels.
-        if tets.len() >= (LABEL / 4) as usize || faces.len() >= LABEL as usize {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "a part of the mesh has more than 2^29 tetrahedra"));
-        }
-        let mut sorted = Self { tets, ..Self::default() };
+        let (tets, labels) = read_part(mesh, part)?;
+        let mut sorted = Self { tets: tets.into_owned(), ..Self::default() };
         let handles = 0..4 * sorted.tets.len() as u32;
-        let labels = (0..).zip(faces.iter()).map(|(i, &face)| packed(face_key(face), LABEL | i));
-        let sides: Vec<u128> = handles.map(|h| packed(face_key(face_of(&sorted.tets, h)), h)).chain(labels).collect();
-        let patch = |side: u128| patches.get((side as u32 & !LABEL) as usize).copied().unwrap_or(0);
+        let marks = (0..).zip(labels.faces.iter()).map(|(i, &face)| packed(face_key(face), LABEL | i));
+        let sides: Vec<u128> = handles.map(|h| packed(face_key(face_of(&sorted.tets, h)), h)).chain(marks).collect();
         let (mut sides, ends) = buckets(&sides);
         let mut start = 0;
         for end in ends {
@@ -294,15 +319,11 @@ impl Sorted {
             start = end as usize;
             bucket.sort_unstable();
             for same in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
-                // Tetrahedra come before labels.
-                match *same {
-                    [one] if one as u32 & LABEL == 0 => sorted.open.push(one as u32),
-                    [label] => sorted.strays.push((vertices_of(label), Side::Patch(patch(label)))),
-                    [one, two] if one as u32 & LABEL == 0 && two as u32 & LABEL == 0 => {
-                        sorted.pairs.push([one as u32, two as u32]);
-                    }
-                    [one, label] if one as u32 & LABEL == 0 => sorted.labelled.push((one as u32, patch(label))),
-                    _ => return Err(unpaired(vertices_of(same[0]), same.len())),
+                match paired(same)? {
+                    Paired::Open(handle) => sorted.open.push(handle),
+                    Paired::Stray(_) => {}
+                    Paired::Inner(pair) => sorted.pairs.push(pair),
+                    Paired::Outer(handle, label) => sorted.labelled.push((handle, patch_of(&labels, label))),
                 }
             }
         }
@@ -312,18 +333,115 @@ impl Sorted {
     /// Boundary faces labelled in the part itself, ascending by tetrahedra.
     fn outer(&self, first: u32) -> Vec<OuterFace> {
         let mut outer: Vec<OuterFace> =
-            self.labelled.iter().map(|&(handle, patch)| self.outer_face(first, handle, patch)).collect();
+            self.labelled.iter().map(|&(handle, patch)| outer_face(&self.tets, first, handle, patch)).collect();
         outer.sort_unstable();
         outer
     }
+}
 
-    fn outer_face(&self, first: u32, handle: u32, patch: i32) -> OuterFace {
-        OuterFace { tet: first + (handle >> 2), patch, vertices: face_of(&self.tets, handle) }
+fn outer_face(tets: &[[u32; 4]], first: u32, handle: u32, patch: i32) -> OuterFace {
+    OuterFace { tet: first + (handle >> 2), patch, vertices: face_of(tets, handle) }
+}
+
+/// Sides of a face within a part, by their handles.
+enum Paired {
+    /// One tetrahedron.
+    Open(u32),
+    /// One label.
+    Stray(u32),
+    /// Two tetrahedra.
+    Inner([u32; 2]),
+    /// A tetrahedron and a label.
+    Outer(u32, u32),
+}
+
+/// Pairs the sides of one face, given in ascending order: tetrahedra come before labels.
+fn paired(same: &[u128]) -> io::Result<Paired> {
+    let is_label = |side: u128| side as u32 & LABEL != 0;
+    match *same {
+        [one] if !is_label(one) => Ok(Paired::Open(one as u32)),
+        [label] => Ok(Paired::Stray(label as u32)),
+        [one, two] if !is_label(two) => Ok(Paired::Inner([one as u32, two as u32])),
+        [one, label] if !is_label(one) => Ok(Paired::Outer(one as u32, label as u32)),
+        _ => Err(unpaired(vertices_of(same[0]), same.len())),
+    }
+}
+
+/// Ends of a part: faces that are no pair within it, and boundary faces on request.
+struct Ends {
+    /// Number of tetrahedra.
+    tets: usize,
+    loose: Vec<Loose>,
+    /// Number of faces between two tetrahedra.
+    pairs: usize,
+    /// Boundary faces labelled in the part itself, ascending by tetrahedra, which are counted from 0.
+    outer: Vec<OuterFace>,
+}
+
+/// Sums of hashes in a table: the upper bits are the exclusive or of the hashes, the lowest two the number of sides, at most 3.
+struct Sums {
+    table: Vec<u64>,
+    shift: u32,
+}
+
+impl Sums {
+    /// Slots per side. With four, 12 % of the pairs share their slot.
+    const SLOTS: usize = 4;
+
+    fn new(sides: usize) -> Self {
+        let bits = (Self::SLOTS * sides.max(1)).next_power_of_two().ilog2().max(1);
+        Self { table: vec![0; 1 << bits], shift: u64::BITS - bits }
     }
 
-    fn loose(&self) -> Vec<Loose> {
-        let open = self.open.iter().map(|&handle| (face_key(face_of(&self.tets, handle)), Side::Tet(handle >> 2)));
-        open.chain(self.strays.iter().copied()).collect()
+    fn add(&mut self, hash: u64, sides: u64) {
+        let slot = &mut self.table[(hash >> self.shift) as usize];
+        *slot = ((*slot ^ (hash << 2)) & !3) | ((*slot & 3) + sides).min(3);
+    }
+
+    /// True if the slot of this hash holds one pair and nothing else.
+    fn is_pair(&self, hash: u64) -> bool {
+        self.table[(hash >> self.shift) as usize] == 2
+    }
+}
+
+fn hash_of([a, b, c]: [u32; 3]) -> u64 {
+    let two = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (two.rotate_left(32) ^ u64::from(c).wrapping_mul(0xd6e8_feb8_6659_fd93)).wrapping_mul(0x9fb2_1c65_1e98_df25)
+}
+
+impl Ends {
+    /// Reads a part. Most faces are found to be pairs by their hashes, without sorting. A false pair, of two faces with equal
+    /// hashes of 64 bits, contradicts the counts of the mesh later.
+    fn read(mesh: &dyn MeshSource, part: u32, labelled: bool) -> io::Result<Self> {
+        let (tets, labels) = read_part(mesh, part)?;
+        let sides = 4 * tets.len() as u32;
+        let key = |handle: u32| face_key(face_of(&tets, handle));
+        let hashes: Vec<u64> = (0..sides).map(|handle| hash_of(key(handle))).collect();
+        let marks: Vec<u64> = labels.faces.iter().map(|&face| hash_of(face_key(face))).collect();
+        let mut sums = Sums::new(hashes.len() + marks.len());
+        hashes.iter().for_each(|&hash| sums.add(hash, 1));
+        // A slot with 3 sides is never a pair.
+        marks.iter().for_each(|&hash| sums.add(hash, if labelled { 3 } else { 1 }));
+        let tet_sides = (0..sides).zip(&hashes).filter(|(_, hash)| !sums.is_pair(**hash));
+        let mut rest: Vec<u128> = tet_sides.map(|(handle, _)| packed(key(handle), handle)).collect();
+        let skipped = hashes.len() - rest.len();
+        let label_sides = (0..).zip(labels.faces.iter().zip(&marks)).filter(|(_, (_, hash))| !sums.is_pair(**hash));
+        rest.extend(label_sides.map(|(i, (&face, _))| packed(face_key(face), LABEL | i)));
+        rest.sort_unstable();
+        let mut ends = Self { tets: tets.len(), loose: Vec::new(), pairs: skipped / 2, outer: Vec::new() };
+        for same in rest.chunk_by(|a, b| a >> 32 == b >> 32) {
+            let vertices = vertices_of(same[0]);
+            match paired(same)? {
+                Paired::Open(handle) => ends.loose.push((vertices, Side::Tet(handle >> 2))),
+                Paired::Stray(label) => ends.loose.push((vertices, Side::Patch(patch_of(&labels, label)))),
+                Paired::Inner(_) => ends.pairs += 1,
+                Paired::Outer(handle, label) => {
+                    ends.outer.push(outer_face(&tets, 0, handle, patch_of(&labels, label)));
+                }
+            }
+        }
+        ends.outer.sort_unstable();
+        Ok(ends)
     }
 }
 

@@ -19,7 +19,11 @@ class FileOptions(TypedDict, total=False):
         Option("Format of a mesh; found by the extension if absent"),
     ]
     prisms: Annotated[
-        bool, Option("Write the prisms and pyramids of layers as whole cells, with the array 'layer' (VTU and MSH 4.1)", False)
+        bool,
+        Option(
+            "Write the prisms and pyramids of layers as whole cells, with the array 'layer' (VTU and PVTU), or without (MSH)",
+            False,
+        ),
     ]
     float32: Annotated[
         bool, Option("Round coordinates in VTU and PVTU files to 32 bits; the validity check holds for the exact ones", False)

@@ -25,6 +25,9 @@ class PictureOptions(TypedDict, total=False):
         Literal["plain", "patch", "block", "radius", "order", "quality"] | None,
         Option("Quantity shown by colour; if absent, 'patch' for a mesh and 'radius' for a network"),
     ]
+    data: Annotated[
+        str | None, Option("Array of nodes or vessels of the network shown by colours, alone or with its unit: 'Pressure:Pa'")
+    ]
     background: Annotated[Literal["light", "dark", "none"], Option("Background; 'none' is transparent", "light")]
     clip: Annotated[
         str | None,
@@ -39,6 +42,9 @@ class PictureOptions(TypedDict, total=False):
 class FaultOptions(TypedDict, total=False):
     """Faults"""
 
+    data: Annotated[
+        str | None, Option("Array of nodes or vessels of the network shown by colours, alone or with its unit: 'Pressure:Pa'")
+    ]
     memory: Annotated[
         str,
         Option(

@@ -16,7 +16,7 @@ pub struct WriteOptions<'a> {
     pub grid: GridOptions,
     /// Additional values for VTK and Gmsh files.
     pub values: Option<&'a dyn Beside>,
-    /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU and MSH 4.1 only, without values.
+    /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU, PVTU and MSH only, without values.
     pub prisms: bool,
     /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
     pub remark: Option<&'a dyn Fn(&str)>,

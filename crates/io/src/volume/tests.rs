@@ -274,9 +274,10 @@ fn a_mesh_whose_writing_is_stopped_leaves_nothing() {
 fn prisms_are_whole_cells_in_vtu_and_msh_and_split_when_read() {
     let folder = tempfile::tempdir().unwrap();
     let options = WriteOptions::default().prisms(true);
-    for name in ["prisms.vtu", "prisms.msh"] {
+    for name in ["prisms.vtu", "prisms.msh", "prisms2.msh", "prisms.pvtu"] {
         let path = folder.path().join(name);
-        write_mesh_with(&options, &path, &slab(), &MeshNotes::default(), &()).unwrap();
+        let format = (name == "prisms2.msh").then_some(MeshFormat::Msh2);
+        write_mesh_with(&options.format(format), &path, &slab(), &MeshNotes::default(), &()).unwrap();
         let read = read_mesh(&path).unwrap().volume;
         assert_eq!(read.mesh.tets.len(), 12, "{name}");
         assert!(check_tets(&read.mesh, None).failed().next().is_none(), "{name}");
@@ -289,7 +290,7 @@ fn prisms_are_whole_cells_in_vtu_and_msh_and_split_when_read() {
     let text = fs::read(folder.path().join("prisms.vtu")).unwrap();
     assert!(String::from_utf8_lossy(&text).contains("NumberOfCells=\"16\""));
     let error = write_mesh_with(&options, &folder.path().join("a.mesh"), &slab(), &MeshNotes::default(), &());
-    assert!(error.unwrap_err().to_string().contains(".vtu and .msh"));
+    assert!(error.unwrap_err().to_string().contains(".vtu, .pvtu and .msh"));
 }
 
 /// Prisms of another program, with the outer triangle first or last.

@@ -5,6 +5,7 @@ use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::pvtu::{PieceFolder, Pieces};
+use super::vtu::MixedGrid;
 use super::{medit, msh, npy, openfoam, pvtu, simvascular, vtu};
 use crate::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::tetgen::MeshFamily;
@@ -78,10 +79,15 @@ pub fn write_mesh_with(
     let grid = options.grid;
     let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
     let write = || match format {
-        MeshFormat::Vtu | MeshFormat::Msh if options.prisms => write_prisms(path, format, mesh, notes, grid, progress),
+        MeshFormat::Vtu | MeshFormat::Msh | MeshFormat::Msh2 if options.prisms => {
+            write_prisms(path, format, mesh, notes, grid, progress)
+        }
+        MeshFormat::Pvtu if options.prisms => {
+            pvtu::write_mixed(path, mesh, notes, Pieces { grid, ..Pieces::default() }, progress)
+        }
         _ if options.prisms => Err(io::Error::new(
             io::ErrorKind::Unsupported,
-            "prisms are written to .vtu and .msh (version 4.1); OpenFOAM cases have them in any case",
+            "prisms are written to .vtu, .pvtu and .msh; OpenFOAM cases have them in any case",
         )),
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
@@ -126,7 +132,13 @@ fn write_prisms(
     write_whole(path, |out| {
         let out = &mut Asked { out, progress };
         match format {
-            MeshFormat::Vtu => vtu::write_mixed(out, &volume, &mixed, notes, grid),
+            MeshFormat::Vtu => {
+                let has_regions = !notes.regions.is_empty();
+                let (points, notes) = (&volume.mesh.points, Some((&volume.patches[..], notes)));
+                let grid = MixedGrid { points, mixed: &mixed, notes, has_regions, global_ids: None, options: grid };
+                vtu::write_mixed(out, &grid)
+            }
+            MeshFormat::Msh2 => msh::write_mixed_2(out, &volume, &mixed, notes),
             _ => msh::write_mixed(out, &volume, &mixed, notes),
         }
     })

@@ -47,6 +47,14 @@ impl MixedCell {
     pub fn vertices(&self) -> &[u32] {
         &self.vertices[..usize::from(self.count)]
     }
+
+    /// Cell with other vertex numbers.
+    #[must_use]
+    pub fn renumbered(&self, number: impl Fn(u32) -> u32) -> Self {
+        let mut cell = *self;
+        cell.vertices[..usize::from(self.count)].iter_mut().for_each(|v| *v = number(*v));
+        cell
+    }
 }
 
 /// Triangle or quadrilateral of the boundary, counter-clockwise seen from outside.
@@ -65,6 +73,14 @@ impl MixedFace {
     #[must_use]
     pub fn vertices(&self) -> &[u32] {
         &self.vertices[..usize::from(self.count)]
+    }
+
+    /// Face with other vertex numbers.
+    #[must_use]
+    pub fn renumbered(&self, number: impl Fn(u32) -> u32) -> Self {
+        let mut face = *self;
+        face.vertices[..usize::from(self.count)].iter_mut().for_each(|v| *v = number(*v));
+        face
     }
 }
 

@@ -1,6 +1,6 @@
 //! Elements of a mesh with prisms and pyramids.
 
-use super::names::{MSH_PRISM, MSH_PYRAMID, MSH_QUAD, MSH_TETRA, MSH_TRIANGLE};
+use super::names::{kind_of_cell, kind_of_face};
 use super::surfaces::Surfaces;
 use super::tags::Tags;
 use super::write::{ints, sizes, volumes_of, write_before_elements, write_extra};
@@ -31,17 +31,12 @@ pub(in crate::volume) fn write_mixed(
     let volume_of: BTreeMap<Option<i32>, i32> = volumes.iter().map(|volume| volume.region).zip(1..).collect();
     for (tag, face) in (mixed.cells.len() + 1..).zip(&mixed.faces) {
         let surface = surface_of.get(&face.patch).copied().unwrap_or(1);
-        let kind = if face.vertices().len() == 4 { MSH_QUAD } else { MSH_TRIANGLE };
+        let kind = kind_of_face(face.vertices());
         blocks.entry((2, surface, kind)).or_default().push((tag, face.vertices()));
     }
     for (tag, cell) in (1..).zip(&mixed.cells) {
         let region = volume_of.get(&Some(cell.block)).copied().unwrap_or(1);
-        let kind = match cell.vertices().len() {
-            6 => MSH_PRISM,
-            5 => MSH_PYRAMID,
-            _ => MSH_TETRA,
-        };
-        blocks.entry((3, region, kind)).or_default().push((tag, cell.vertices()));
+        blocks.entry((3, region, kind_of_cell(cell.vertices()))).or_default().push((tag, cell.vertices()));
     }
     let count = mixed.cells.len() + mixed.faces.len();
     out.write_all(b"$Elements\n")?;

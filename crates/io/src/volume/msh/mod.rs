@@ -21,4 +21,4 @@ pub use error::MshFault;
 pub(super) use mixed::write_mixed;
 pub(super) use read::read;
 pub(super) use write::write;
-pub(super) use write_2::write as write_2;
+pub(super) use write_2::{write as write_2, write_mixed as write_mixed_2};

@@ -72,3 +72,17 @@ impl Extra {
         (notes, self.caps.into_iter().map(cap).collect())
     }
 }
+
+/// Type of a cell with these vertices.
+pub(super) fn kind_of_cell(vertices: &[u32]) -> i32 {
+    match vertices.len() {
+        6 => MSH_PRISM,
+        5 => MSH_PYRAMID,
+        _ => MSH_TETRA,
+    }
+}
+
+/// Type of a face with these vertices.
+pub(super) fn kind_of_face(vertices: &[u32]) -> i32 {
+    if vertices.len() == 4 { MSH_QUAD } else { MSH_TRIANGLE }
+}

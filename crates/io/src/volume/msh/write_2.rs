@@ -1,11 +1,13 @@
 //! Writer of Gmsh's older format 2.2 as text, read by MFEM, NGSolve, OpenFOAM's converter and others.
 
-use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
+use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME, kind_of_cell, kind_of_face};
 use super::values::write_values_2;
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::NamedRegion;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::stacks::MixedMesh;
+use anastomesh_mesh::{Patch, VolumeMesh};
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
@@ -64,26 +66,8 @@ pub(in crate::volume) fn write(
     values: Option<&dyn Beside>,
 ) -> io::Result<()> {
     let (counts, groups) = (mesh.counts(), Groups::of(mesh, notes)?);
-    writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
-    let named: Vec<_> = mesh.patches().iter().filter(|p| p.id > 0).collect();
-    let volumes = groups.named();
-    writeln!(out, "$PhysicalNames\n{}", named.len() + volumes.len())?;
-    for patch in named {
-        writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
-    }
-    for (id, name) in volumes {
-        writeln!(out, "3 {id} \"{}\"", name.replace('"', "'"))?;
-    }
-    writeln!(out, "$EndPhysicalNames\n$Nodes\n{}", counts.points)?;
-    let mut tag = 0_u64;
-    mesh.each_points(|points| {
-        for p in points {
-            tag += 1;
-            writeln!(out, "{tag} {:?} {:?} {:?}", p.x, p.y, p.z)?;
-        }
-        Ok(())
-    })?;
-    writeln!(out, "$EndNodes\n$Elements\n{}", counts.boundary + counts.tets)?;
+    write_before_elements(out, mesh, &groups)?;
+    writeln!(out, "$Elements\n{}", counts.boundary + counts.tets)?;
     let mut tag = 0_u64;
     mesh.each_faces(|piece| {
         for (i, &face) in piece.faces.iter().enumerate() {
@@ -105,8 +89,62 @@ pub(in crate::volume) fn write(
     if let Some(values) = values {
         write_values_2(out, mesh, values)?;
     }
+    write_extra(out, mesh.patches(), notes)
+}
+
+/// Writes a mesh with mixed cells as MSH 2.2, faces first.
+///
+/// # Errors
+/// The output `out` fails.
+pub(in crate::volume) fn write_mixed(
+    out: &mut impl Write,
+    volume: &VolumeMesh,
+    mixed: &MixedMesh,
+    notes: &MeshNotes,
+) -> io::Result<()> {
+    let groups = Groups::of(volume, notes)?;
+    write_before_elements(out, volume, &groups)?;
+    writeln!(out, "$Elements\n{}", mixed.faces.len() + mixed.cells.len())?;
+    for (tag, face) in (1..).zip(&mixed.faces) {
+        let patch = face.patch.max(0);
+        write_element(out, tag, kind_of_face(face.vertices()), [patch, patch.max(1)], face.vertices())?;
+    }
+    for (tag, cell) in (mixed.faces.len() as u64 + 1..).zip(&mixed.cells) {
+        let group = groups.of_tet(cell.block);
+        write_element(out, tag, kind_of_cell(cell.vertices()), [group, group.max(1)], cell.vertices())?;
+    }
+    writeln!(out, "$EndElements")?;
+    write_extra(out, &volume.patches, notes)
+}
+
+/// Writes the sections before the elements.
+fn write_before_elements(out: &mut impl Write, mesh: &dyn MeshSource, groups: &Groups) -> io::Result<()> {
+    writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
+    let named: Vec<_> = mesh.patches().iter().filter(|p| p.id > 0).collect();
+    let volumes = groups.named();
+    writeln!(out, "$PhysicalNames\n{}", named.len() + volumes.len())?;
+    for patch in named {
+        writeln!(out, "2 {} \"{}\"", patch.id, patch.name.replace('"', "'"))?;
+    }
+    for (id, name) in volumes {
+        writeln!(out, "3 {id} \"{}\"", name.replace('"', "'"))?;
+    }
+    writeln!(out, "$EndPhysicalNames\n$Nodes\n{}", mesh.counts().points)?;
+    let mut tag = 0_u64;
+    mesh.each_points(|points| {
+        for p in points {
+            tag += 1;
+            writeln!(out, "{tag} {:?} {:?} {:?}", p.x, p.y, p.z)?;
+        }
+        Ok(())
+    })?;
+    writeln!(out, "$EndNodes")
+}
+
+/// Writes the section of this program.
+fn write_extra(out: &mut impl Write, patches: &[Patch], notes: &MeshNotes) -> io::Result<()> {
     writeln!(out, "${SECTION}")?;
-    serde_json::to_writer(&mut *out, &Extra::of(mesh.patches(), notes))?;
+    serde_json::to_writer(&mut *out, &Extra::of(patches, notes))?;
     write!(out, "\n$End{SECTION}\n")
 }
 

@@ -6,6 +6,7 @@
 
 mod error;
 mod folder;
+mod mixed;
 mod order;
 mod plan;
 mod read;
@@ -15,5 +16,6 @@ mod write;
 
 pub use error::PvtuFault;
 pub(super) use folder::PieceFolder;
+pub(super) use mixed::write_mixed;
 pub(super) use read::read;
 pub(super) use write::{Pieces, write};

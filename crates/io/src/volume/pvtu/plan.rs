@@ -48,6 +48,15 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Cuts cells with these blocks like [`Plan::of`], and counts the faces.
+    pub(super) fn of_blocks(cells: impl Iterator<Item = i32>, faces: impl Iterator<Item = i32>, limit: usize) -> Self {
+        let mut cutter = Cutter { limit: limit.max(1), ..Cutter::default() };
+        cells.for_each(|block| cutter.add(block));
+        let mut plan = cutter.finish();
+        faces.for_each(|block| plan.span_mut(block).faces += 1);
+        plan
+    }
+
     fn span_mut(&mut self, block: i32) -> &mut Span {
         self.spans.get_mut(&block).unwrap_or(&mut self.everywhere)
     }

@@ -5,7 +5,6 @@ use crate::file::{FileError, read_bytes};
 use crate::volume::content::MeshFile;
 use crate::volume::vtu::GridReader;
 use crate::vtk_xml::VtkXml;
-use anastomesh_mesh::VolumeMesh;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -24,13 +23,13 @@ pub(in crate::volume) fn read(path: &Path) -> Result<MeshFile, FileError<PvtuFau
         let piece = path.with_file_name(source);
         reader.read(&read_bytes(&piece)?).map_err(FileError::content(&piece))?;
     }
-    let (mut file, ids) = reader.finish();
-    unite(&mut file.volume, &ids).map_err(FileError::content(path))?;
-    Ok(file)
+    unite(&mut reader).map_err(FileError::content(path))?;
+    Ok(reader.finish())
 }
 
 /// Merges points with equal global ids, if there are ids; points are then sorted by them.
-fn unite(volume: &mut VolumeMesh, ids: &[i64]) -> Result<(), PvtuFault> {
+fn unite(reader: &mut GridReader) -> Result<(), PvtuFault> {
+    let (given, ids) = reader.points();
     if ids.is_empty() {
         return Ok(());
     }
@@ -39,19 +38,16 @@ fn unite(volume: &mut VolumeMesh, ids: &[i64]) -> Result<(), PvtuFault> {
     distinct.dedup();
     let index_of: Vec<u32> =
         ids.par_iter().map(|id| distinct.binary_search(id).map_or(u32::MAX, |i| i as u32)).collect();
-    let mesh = &mut volume.mesh;
     let mut points = vec![None; distinct.len()];
-    for ((&index, &p), &id) in index_of.iter().zip(&mesh.points).zip(ids) {
+    for ((&index, &p), &id) in index_of.iter().zip(given).zip(ids) {
         if let Some(place) = points.get_mut(index as usize)
             && place.replace(p).is_some_and(|other| other != p)
         {
             return Err(PvtuFault::PointsDiffer { id });
         }
     }
-    mesh.points = points.into_iter().flatten().collect();
-    let united = |v: &mut u32| *v = index_of.get(*v as usize).copied().unwrap_or(u32::MAX);
-    mesh.tets.as_flattened_mut().par_iter_mut().for_each(united);
-    volume.boundary.as_flattened_mut().par_iter_mut().for_each(united);
+    let points = points.into_iter().flatten().collect();
+    reader.renumber(points, &index_of);
     Ok(())
 }
 

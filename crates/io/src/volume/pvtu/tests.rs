@@ -1,12 +1,15 @@
 //! Tests of round trips for any partition, and of preserved files after failures.
 
 use super::error::PvtuFault;
+use super::mixed::write_mixed;
 use super::write::{Pieces, write};
 use crate::volume::error::MeshFault;
-use crate::volume::fixtures::labelled_tube;
+use crate::volume::fixtures::{labelled_tube, slab};
 use crate::volume::in_pieces::InPieces;
 use crate::volume::{MeshFileError, MeshNotes, ensure_writable, read_mesh, write_mesh};
 use anastomesh_mesh::VolumeMesh;
+use anastomesh_mesh::check::check_tets;
+use anastomesh_mesh::stacks::MixedMesh;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -232,4 +235,30 @@ fn pieces_of_other_programs() {
         read_mesh(&path),
         Err(MeshFileError::Content { fault: MeshFault::Pvtu(PvtuFault::PointsDiffer { id: 20 }), .. })
     ));
+}
+
+#[test]
+fn prisms_in_several_pieces_are_split_alike_on_both_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("prisms.pvtu");
+    // Two blocks of two prisms each. The numbers of points run against the order of the pieces.
+    let mut volume = slab();
+    volume.mesh.points.reverse();
+    for v in volume.mesh.tets.iter_mut().flatten().chain(volume.boundary.iter_mut().flatten()) {
+        *v = 11 - *v;
+    }
+    volume.tet_block = (0..12).map(|tet| tet / 6).collect();
+    let whole = MixedMesh::of(&volume);
+    assert!(whole.cells.iter().all(|cell| cell.vertices().len() == 6));
+    for (tets, count) in [(1, 4), (2, 2), (9, 1)] {
+        write_mixed(&path, &volume, &MeshNotes::default(), Pieces { tets, ..Pieces::default() }, &()).unwrap();
+        assert_eq!(fs::read_dir(folder.path().join("prisms")).unwrap().count(), count);
+        let read = read_mesh(&path).unwrap().volume;
+        assert_eq!(read.mesh.points, volume.mesh.points);
+        assert!(check_tets(&read.mesh, None).failed().next().is_none(), "{count}");
+        let again = MixedMesh::of(&read);
+        assert_eq!((again.cells.len(), again.faces.len()), (whole.cells.len(), whole.faces.len()), "{count}");
+        let text = String::from_utf8(fs::read(&path).unwrap()).unwrap();
+        assert!(text.contains("Name=\"layer\""));
+    }
 }

@@ -69,7 +69,8 @@ pub(in crate::volume) fn write(
         used: Bits::new(points),
     }
     .write()?;
-    write_index(&mut index, plan.ends.len(), &folder, !notes.regions.is_empty(), pieces)?;
+    let labels = if notes.regions.is_empty() { &[][..] } else { &[REGION] };
+    write_index(&mut index, plan.ends.len(), &folder, pieces, labels)?;
     folder.commit(index, path)
 }
 
@@ -80,18 +81,19 @@ fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
-fn write_index(
+/// Writes the index. `labels` are further integers of cells.
+pub(super) fn write_index(
     out: &mut impl Write,
     pieces: usize,
     folder: &PieceFolder,
-    has_regions: bool,
     how: Pieces,
+    labels: &[&'static str],
 ) -> io::Result<()> {
     let grid = how.grid;
     let compressor = if grid.raw { "" } else { " compressor=\"vtkZLibDataCompressor\"" };
     let float = if grid.float32 { "Float32" } else { "Float64" };
-    let columns = how.values.map_or(&[][..], Beside::columns);
-    let region = if has_regions { format!("<PDataArray type=\"Int32\" Name=\"{REGION}\"/>\n") } else { String::new() };
+    let mut columns = how.values.map_or(&[][..], Beside::columns).to_vec();
+    columns.extend(labels.iter().map(|name| Column { name, at_points: false, is_integer: true }));
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
@@ -99,9 +101,9 @@ fn write_index(
          <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
          </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
          <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
-         <PDataArray type=\"Int32\" Name=\"block\"/>\n{region}{}</PCellData>",
-        announced(columns, true),
-        announced(columns, false)
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+        announced(&columns, true),
+        announced(&columns, false)
     )?;
     for piece in 0..pieces {
         let source = folder.source(piece);

@@ -21,7 +21,7 @@ mod write;
 
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
-pub(super) use mixed::write_mixed;
+pub(super) use mixed::{MixedGrid, write_mixed};
 pub(super) use names::{ELEMENT_ID, GLOBAL_IDS, NODE_ID, REGION};
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};

@@ -8,6 +8,7 @@ use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::stacks::Polyhedra;
+use rayon::prelude::*;
 
 /// Cell arrays that are used as boundary labels, in order of preference.
 const LABEL_ARRAYS: [&str; 9] = [
@@ -31,7 +32,7 @@ const LABEL_ARRAYS: [&str; 9] = [
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, VtuFault> {
     let mut reader = GridReader::default();
     reader.read(bytes)?;
-    Ok(reader.finish().0)
+    Ok(reader.finish())
 }
 
 /// Mesh read from one or several consecutive files.
@@ -62,8 +63,27 @@ impl GridReader {
         Ok(())
     }
 
-    /// Returns the mesh, and the global ids of its points, which are complete or empty.
-    pub(in crate::volume) fn finish(mut self) -> (MeshFile, Vec<i64>) {
+    /// Points, and their global ids, which are complete or empty.
+    pub(in crate::volume) fn points(&self) -> (&[Point3], &[i64]) {
+        let points = &self.volume.mesh.points;
+        (points, if self.global_ids.len() == points.len() { &self.global_ids } else { &[] })
+    }
+
+    /// Replaces the points. `index_of` holds the new number of each present one. Cells are split afterwards, because
+    /// neighbours in different pieces agree on diagonals only by the common numbers.
+    pub(in crate::volume) fn renumber(&mut self, points: Vec<Point3>, index_of: &[u32]) {
+        let Self { volume, polyhedra, .. } = self;
+        volume.mesh.points = points;
+        let united = |v: &mut u32| *v = index_of.get(*v as usize).copied().unwrap_or(u32::MAX);
+        volume.mesh.tets.as_flattened_mut().par_iter_mut().for_each(united);
+        volume.boundary.as_flattened_mut().par_iter_mut().for_each(united);
+        polyhedra.prisms.iter_mut().flat_map(|(_, prism)| prism).for_each(united);
+        polyhedra.pyramids.iter_mut().flat_map(|(_, pyramid)| pyramid).for_each(united);
+        polyhedra.quads.iter_mut().flat_map(|(_, quad)| quad).for_each(united);
+    }
+
+    /// Returns the mesh.
+    pub(in crate::volume) fn finish(mut self) -> MeshFile {
         self.polyhedra.split(&mut self.volume.mesh.tets, &mut self.volume.boundary);
         let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
         match self.label_array {
@@ -78,8 +98,7 @@ impl GridReader {
                 file.volume.boundary_block.clear();
             }
         }
-        let all_known = self.global_ids.len() == file.volume.mesh.points.len();
-        (file, if all_known { self.global_ids } else { Vec::new() })
+        file
     }
 
     fn read_piece(&mut self, xml: &VtkXml, piece: ElementId) -> Result<(), VtuFault> {
