@@ -138,7 +138,8 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Resul
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
     arrays.extend(cell_arrays(mesh, Width::Int32));
     let from_one = |place, name, count| {
-        ArrayWriter::new(place, name, INT32, count, move |out| out.push(count, |i| (i as u32 + 1).to_le_bytes()))
+        let fill = move |out: &mut Blocks| out.push(count, |i| (i as u32 + 1).to_le_bytes());
+        uncompressed(ArrayWriter::new(place, name, INT32, count, fill))
     };
     arrays.push(from_one(ArrayLocation::PointData, "GlobalNodeID", points));
     arrays.push(from_one(ArrayLocation::CellData, "GlobalElementID", tets));
@@ -147,6 +148,11 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource) -> io::Resul
     }));
     let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{tets}\"");
     File { kind: "UnstructuredGrid", counts, arrays, raw: false }.write(out)
+}
+
+/// Array that is stored raw. Compression of ascending numbers saves little space for its time.
+fn uncompressed(array: ArrayWriter) -> ArrayWriter {
+    ArrayWriter { shrinks: false, ..array }
 }
 
 /// Writes a surface with the mesh numbers of its points and adjacent tetrahedra.
@@ -165,11 +171,11 @@ fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet) -> io::Result<(
         sheet.each_ids(&mut |ids| out.push(ids.len(), |i| (ids[i] + 1).to_le_bytes()))
     });
     let arrays = vec![
-        nodes,
+        uncompressed(nodes),
         points_array(points, false, |mut each| sheet.each_points(&mut each)),
-        ArrayWriter { shrinks: false, ..corners },
-        ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets),
-        label("GlobalElementID", |face| face.tet + 1),
+        uncompressed(corners),
+        uncompressed(ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets)),
+        uncompressed(label("GlobalElementID", |face| face.tet + 1)),
         label("ModelRegionID", |_| 1),
         label("ModelFaceID", |face| face.patch as u32),
     ];
