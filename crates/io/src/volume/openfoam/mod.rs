@@ -108,7 +108,8 @@ pub(super) fn write(
     let figures = poly_mesh::write(&folder, mesh, &faces, cells, &boundary, progress)?;
     let flow = &*notes.flow_of(mesh.patches());
     let coupled = Outlets::of(&boundary, flow).are_coupled();
-    let settings = Settings::of(&figures, reynolds(&boundary, flow), coupled);
+    let settings =
+        Settings::of(&figures, cells.is_some(), reynolds(&boundary, flow), coupled, flow.transient.is_some());
     settings.doubts.iter().for_each(|doubt| remark(doubt));
     let case = Case { boundary: &boundary, flow, settings: &settings };
     for (name, text) in TEXTS {

@@ -14,6 +14,9 @@ const HOPELESS: f64 = 88.0;
 const SKEWED: f64 = 4.0;
 /// Skewness above which no setting is expected to converge.
 const TOO_SKEWED: f64 = 20.0;
+/// Mean angle, in degrees, up to which tetrahedra without layers are compact. Plain meshes have at most 17, stretched ones at
+/// least 20.
+const COMPACT: f64 = 18.0;
 /// Reynolds number (mean velocity, diameter) above which both equations are relaxed more.
 const FAST: f64 = 300.0;
 /// Reynolds number above which flow in a tube is turbulent.
@@ -38,12 +41,19 @@ pub(super) struct Settings {
 
 impl Settings {
     /// Settings for a mesh with these figures and the highest Reynolds number of its inlets. With `coupled` outlets the
-    /// pressure equation has one corrector: their pressure follows each flow rate.
-    pub(super) fn of(figures: &Figures, reynolds: f64, coupled: bool) -> Self {
+    /// pressure equation has one corrector: their pressure follows each flow rate. `layered` meshes have prisms at the wall.
+    /// In `transient` flow, pressure and velocity oscillate unless gradients match the divergence of the pressure equation.
+    pub(super) fn of(figures: &Figures, layered: bool, reynolds: f64, coupled: bool, transient: bool) -> Self {
         let angle = figures.max_angle;
         let correction = if angle <= CORRECTED { "corrected" } else { "limited corrected 0.5" };
         let is_skewed = figures.skewness > SKEWED || angle > CORRECTED;
-        let gradient = if is_skewed { "cellLimited Gauss linear 1" } else { "Gauss linear" };
+        let gradient = match is_skewed {
+            true => "cellLimited Gauss linear 1",
+            false if transient => "Gauss linear",
+            false if layered || figures.mean_angle() <= COMPACT => "pointCellsLeastSquares",
+            false if reynolds > FAST => "Gauss linear",
+            false => "Gauss pointLinear",
+        };
         // A relaxed momentum equation needs a relaxed pressure: with 0.7 and 1 residuals remain at 0.1.
         let relaxation = if is_skewed || reynolds > FAST { [0.8, 0.8] } else { [0.9, 1.0] };
         let mut reason = String::new();
@@ -73,10 +83,17 @@ impl Settings {
 
     /// Comment on the gradient scheme.
     pub(super) fn why_gradient(&self) -> &'static str {
-        if self.gradient == "Gauss linear" {
-            "// Least squares diverge on long tetrahedra, and Gauss linear needs no limit at this skewness."
-        } else {
-            "// Limited because of the skewness or non-orthogonality."
+        match self.gradient {
+            "pointCellsLeastSquares" => {
+                "// Least squares over all cells at a cell's points: wall cells of tetrahedra have too few face neighbours."
+            }
+            "Gauss pointLinear" => {
+                "// Least squares are less exact on long tetrahedra. Values at points correct the skewness of their faces."
+            }
+            "Gauss linear" => {
+                "// For flow in time, and for fast flow through long tetrahedra: other gradients oscillate or diverge."
+            }
+            _ => "// Limited because of the skewness or non-orthogonality.",
         }
     }
 
@@ -97,14 +114,19 @@ mod tests {
     #[test]
     fn settings_follow_the_figures() {
         let figures = |max_angle, skewness| Figures { max_angle, skewness, growth: 3.0, ..Figures::default() };
-        let good = Settings::of(&figures(60.0, 1.0), 1.0, false);
-        assert_eq!((good.gradient, good.correction, good.correctors), ("Gauss linear", "corrected", 1));
+        let good = Settings::of(&figures(60.0, 1.0), false, 1.0, false, false);
+        assert_eq!((good.gradient, good.correction, good.correctors), ("pointCellsLeastSquares", "corrected", 1));
+        assert_eq!(Settings::of(&figures(60.0, 1.0), true, 1.0, false, true).gradient, "Gauss linear");
+        let long = Figures { angles: 40.0, faces: 1, ..figures(79.0, 1.0) };
+        assert_eq!(Settings::of(&long, false, 1.0, false, false).gradient, "Gauss pointLinear");
+        assert_eq!(Settings::of(&long, false, 400.0, false, false).gradient, "Gauss linear");
+        assert_eq!(Settings::of(&long, true, 1.0, false, false).gradient, "pointCellsLeastSquares");
         assert_eq!((good.relaxation, good.doubts.len()), ([0.9, 1.0], 0));
-        let fast = Settings::of(&figures(60.0, 1.0), 400.0, true);
+        let fast = Settings::of(&figures(60.0, 1.0), false, 400.0, true, false);
         assert_eq!((fast.relaxation, fast.correctors), ([0.8, 0.8], 0));
-        let skewed = Settings::of(&figures(60.0, 6.0), 1.0, false);
+        let skewed = Settings::of(&figures(60.0, 6.0), false, 1.0, false, false);
         assert_eq!((skewed.gradient, skewed.relaxation), ("cellLimited Gauss linear 1", [0.8, 0.8]));
-        let flat = Settings::of(&figures(89.0, 1.0), 3000.0, false);
+        let flat = Settings::of(&figures(89.0, 1.0), false, 3000.0, false, false);
         assert_eq!((flat.correction, flat.relaxation), ("limited corrected 0.5", [0.8, 0.8]));
         assert_eq!(flat.doubts.len(), 2);
         assert!(flat.doubts[0].contains("89.0 degrees") && flat.doubts[1].contains("3000"), "{:?}", flat.doubts);

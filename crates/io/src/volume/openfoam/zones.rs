@@ -40,7 +40,7 @@ pub(super) fn write(
     let faces = Faces::of(&outer)?;
     let boundary = Boundary::of(&outer, &faces, None)?;
     let figures = poly_mesh::write(folder, &outer, &faces, None, &boundary, progress)?;
-    let settings = Settings::of(&figures, 0.0, false);
+    let settings = Settings::of(&figures, false, 0.0, false, false);
     settings.doubts.iter().for_each(|doubt| remark(doubt));
     write_cell_zones(folder, &volume, &notes.regions)?;
     write_face_zones(folder, &volume, &faces, &interfaces)?;
