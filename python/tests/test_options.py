@@ -21,12 +21,15 @@ from anastomesh.options.files import CapOptions, FileOptions
 #: Options that the package itself gives, and those of files that it does not write.
 OURS = {"output", "json", "quiet", "verbose", "progress", "log-format", "certificate"}
 
+#: Options of `mesh` that concern its files.
+IN_FILES = {"dry-run", "shard", "format", "prisms", "split-regions", "float32", "cells", "compress"}
+
 #: Functions, their verb and keywords, and options of the verb that are found elsewhere in Python.
 FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [
     # Files are written by Mesh.save; estimate and mesh_shard have the rest.
-    (anastomesh.mesh, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
-    (anastomesh.estimate, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
-    (anastomesh.mesh_shard, "mesh", options.MeshOptions, {"dry-run", "shard", "format", "prisms", "float32", "cells", "compress"}),
+    (anastomesh.mesh, "mesh", options.MeshOptions, IN_FILES),
+    (anastomesh.estimate, "mesh", options.MeshOptions, IN_FILES),
+    (anastomesh.mesh_shard, "mesh", options.MeshOptions, IN_FILES),
     (anastomesh.flow, "flow", options.NetworkFlowOptions, set()),
     (anastomesh.surface, "surface", options.SurfaceOptions, set()),
     (anastomesh.prepare, "prepare", options.PrepareOptions, set()),

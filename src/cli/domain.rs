@@ -42,6 +42,10 @@ pub struct DomainArgs {
     /// Region to leave out of the result, for example lumen; repeatable
     #[arg(long, value_name = "REGION")]
     without: Vec<String>,
+    /// Write each region to a file beside the output, too: `OUT_lumen.vtu`, `OUT_wall.vtu`, …. Points and cells have their
+    /// numbers in the whole mesh (`GlobalNodeID`, `GlobalElementID`)
+    #[arg(long)]
+    split_regions: bool,
 }
 
 /// Text that can be read as a `T`.
@@ -201,7 +205,17 @@ impl DomainArgs {
             plan.tissue = Some(TissuePlan::new(shape).size(self.tissue_size).growth(self.tissue_growth));
         }
         plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
+        if self.split_regions && plan.is_plain() {
+            return Err(Failure::usage(
+                "--split-regions needs several regions: give --wall, --annulus, --shell or --tissue",
+            ));
+        }
         Ok(plan)
+    }
+
+    /// True if each region also gets a file of its own.
+    pub fn splits(&self) -> bool {
+        self.split_regions
     }
 
     /// Options as command-line text.

@@ -7,10 +7,11 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 52] = [
+const RARE: [&str; 60] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
+    "annulus",
     "barrier-rate",
     "certificate",
     "config",
@@ -54,12 +55,19 @@ const RARE: [&str; 52] = [
     "samples",
     "scale",
     "shard",
+    "shell",
     "size-at",
     "smooth-noise",
+    "split-regions",
     "stretch",
+    "tissue-growth",
+    "tissue-size",
     "to",
     "uniform",
     "version",
+    "wall-growth",
+    "wall-layers",
+    "without",
 ];
 
 /// Shortens the short help of all commands.

@@ -34,7 +34,7 @@ use crate::report::summary::{Summary, forecast};
 use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
-use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with};
+use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::text::conditions;
@@ -138,6 +138,8 @@ struct Found<'a> {
     changes: &'a Changes,
     caps: Option<&'a Caps>,
     defects: &'a [Defect],
+    /// Files of the regions.
+    parts: &'a [PathBuf],
     /// Passes over the network, and the index of the one that gave the mesh.
     attempts: (&'a [Attempt], usize),
     verdict: &'a Verdict,
@@ -183,6 +185,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if args.format.prisms && (plan.layers.is_none() || !args.data.is_empty()) {
         return Err(Failure::usage("--prisms needs --layers, and does not combine with --data"));
+    }
+    if args.format.prisms && !domain.is_plain() {
+        return Err(Failure::usage("--prisms does not combine with regions around the lumen"));
     }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
@@ -338,6 +343,11 @@ impl Args {
         notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.regions.clone());
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
+        let mut parts = Vec::new();
+        if self.domain.splits() && domain.is_some() {
+            let split = || write_regions(&self.output, written, &notes, self.grid.options(), bars);
+            parts = bars.during(Stage::Write, split).map_err(|e| failed(&e))?;
+        }
         if let Some(caps) = &made.caps {
             self.write_table(caps, &made.networks.names)?;
         }
@@ -361,6 +371,7 @@ impl Args {
             changes: &made.changes,
             caps: made.caps.as_ref(),
             defects: &made.defects,
+            parts: &parts,
             attempts: (&made.attempts, made.kept),
             verdict: &verdict,
         };
@@ -584,6 +595,7 @@ impl Args {
         }
         let table = self.table();
         let mut files: Vec<&Path> = if found.is_some() { vec![&self.output, &table] } else { Vec::new() };
+        files.extend(found.into_iter().flat_map(|found| found.parts).map(PathBuf::as_path));
         files.extend(self.certificate.path().filter(|_| found.is_some()));
         files.extend(self.report.page().map(PathBuf::as_path));
         let (attempts, listed) = ((attempts, kept), self.common.verbose);

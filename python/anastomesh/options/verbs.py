@@ -5,6 +5,7 @@ from .files import CapOptions, FileOptions
 from .filling import ComplexOptions, FillingOptions
 from .flow import FlowOptions
 from .growth import GrowthOptions
+from .domain import DomainOptions
 from .layers import LayerOptions, PartialLayerOptions
 from .models import ModelOptions
 from .picture import FaultOptions, PictureOptions
@@ -19,6 +20,7 @@ class MeshOptions(
     ReadingOptions,
     ResolutionOptions,
     LayerOptions,
+    DomainOptions,
     RootOptions,
     FlowOptions,
     PreparationOptions,

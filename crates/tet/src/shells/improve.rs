@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 /// Fraction of the quality of a right prism below which a prism is improved.
 const POOR: f64 = 0.4;
-/// Passes over the poor prisms.
-const PASSES: usize = 6;
+/// Passes over the poor prisms and those around moved vertices.
+const PASSES: usize = 4;
 /// Steps of a vertex, relative to its thickness, in each pass.
 const STEPS: [f64; 3] = [0.3, 0.1, 0.03];
 /// Directions of a step beside the outer position.
@@ -21,7 +21,8 @@ pub(super) struct Improver<'a> {
     surface: &'a TriMesh,
     wall: &'a [[u32; 3]],
     numbers: &'a Numbers,
-    shells: &'a [Shell],
+    /// Fractions of the offset at which the copies of each vertex lie.
+    depths: Vec<f64>,
     /// Plane that a vertex at a rim stays in, by its normal; zero elsewhere.
     planes: &'a [Vec3],
     /// Quality of a right prism with the thickness wanted, at each triangle.
@@ -35,28 +36,40 @@ impl<'a> Improver<'a> {
     pub fn new(
         (surface, wall): (&'a TriMesh, &'a [[u32; 3]]),
         numbers: &'a Numbers,
-        shells: &'a [Shell],
+        shells: &[Shell],
         planes: &'a [Vec3],
         heights: &[f64],
     ) -> Self {
+        let depths = (0..surface.points.len()).flat_map(|v| depths(shells, v)).collect();
         let at_vertex = Incidence::of_cells(wall, surface.points.len());
-        let ideal = wall.iter().map(|t| ideal(surface, *t, shells, heights)).collect();
-        Self { surface, wall, numbers, shells, planes, ideal, at_vertex }
+        let mut made = Self { surface, wall, numbers, depths, planes, ideal: Vec::new(), at_vertex };
+        made.ideal = wall.par_iter().map(|t| made.right_prism(*t, heights)).collect();
+        made
     }
 
-    /// Moves outer positions where prisms are poor. Each move raises the least quality at its vertex.
-    pub fn improve(&self, outer: &mut [Point3]) {
+    /// Moves outer positions where prisms at some triangles are poor. Each move raises the least quality at its vertex.
+    pub fn improve(&self, triangles: &[u32], outer: &mut [Point3]) {
+        let mut watched = triangles.to_vec();
         for _ in 0..PASSES {
-            let is_poor = |t: &u32| self.quality(self.wall[*t as usize], outer) < POOR * self.ideal[*t as usize];
-            let poor: Vec<u32> = (0..self.wall.len() as u32).into_par_iter().filter(is_poor).collect();
+            let is_poor = |t: &u32| self.relative(*t, outer) < POOR;
+            let poor: Vec<u32> = watched.par_iter().copied().filter(is_poor).collect();
             let mut vertices: Vec<u32> = poor.iter().flat_map(|&t| self.wall[t as usize]).collect();
             vertices.sort_unstable();
             vertices.dedup();
-            let moved = vertices.into_iter().filter(|&v| self.move_vertex(v as usize, outer)).count();
-            if moved == 0 {
+            vertices.retain(|&v| self.move_vertex(v as usize, outer));
+            watched = self.around_vertices(vertices);
+            if watched.is_empty() {
                 return;
             }
         }
+    }
+
+    /// Triangles at some vertices.
+    pub fn around_vertices(&self, vertices: impl IntoIterator<Item = u32>) -> Vec<u32> {
+        let mut triangles: Vec<u32> = vertices.into_iter().flat_map(|v| self.at_vertex.get(v)).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
     }
 
     /// Tries positions around that of a vertex. Returns true if one is better.
@@ -99,43 +112,40 @@ impl<'a> Improver<'a> {
             .collect()
     }
 
-    /// Least quality of the prisms at a vertex.
+    /// Least relative quality of the prisms at a vertex.
     fn around(&self, v: usize, outer: &[Point3]) -> f64 {
-        self.at_vertex
-            .get(v as u32)
-            .iter()
-            .map(|&t| self.quality(self.wall[t as usize], outer) / self.ideal[t as usize])
-            .fold(f64::INFINITY, f64::min)
+        self.at_vertex.get(v as u32).iter().map(|&t| self.relative(t, outer)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Quality at a triangle, relative to that of a right prism.
+    fn relative(&self, t: u32, outer: &[Point3]) -> f64 {
+        let triangle = self.wall[t as usize];
+        self.quality(triangle, triangle.map(|v| outer[v as usize])) / self.ideal[t as usize]
+    }
+
+    /// Quality of the prism at right angles to a triangle.
+    fn right_prism(&self, triangle: [u32; 3], heights: &[f64]) -> f64 {
+        let [a, b, c] = triangle.map(|v| self.surface.points[v as usize]);
+        let outward = -(b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let height = triangle.map(|v| heights[v as usize]).into_iter().fold(0.0, f64::max);
+        self.quality(triangle, [a, b, c].map(|p| p + outward * height)).max(f64::MIN_POSITIVE)
     }
 
     /// Least quality of the tetrahedra at a wall triangle: minimum height over longest edge, negative if inverted.
-    fn quality(&self, triangle: [u32; 3], outer: &[Point3]) -> f64 {
-        let base = triangle.map(|v| self.surface.points[v as usize]);
-        let copies = triangle.map(|v| depths(self.shells, v as usize));
+    fn quality(&self, triangle: [u32; 3], outer: [Point3; 3]) -> f64 {
+        let layers = self.numbers.layers() as usize;
         let place = |copy: u32| {
             let origin = self.numbers.origin(copy);
-            let i = triangle.iter().position(|&v| v == origin).unwrap_or_default();
+            let base = &self.surface.points[origin as usize];
             if copy == origin {
-                return base[i];
+                return *base;
             }
+            let i = triangle.iter().position(|&v| v == origin).unwrap_or_default();
             let layer = (copy - self.numbers.copy(origin, 1)) as usize;
-            toward(&base[i], &outer[origin as usize], copies[i][layer])
+            toward(base, &outer[i], self.depths[origin as usize * layers + layer])
         };
         self.numbers.tets_at(triangle).map(|tet| flatness(tet.map(place))).fold(f64::INFINITY, f64::min)
     }
-}
-
-/// Quality of a right prism with the thinnest layer and the longest edge at a triangle.
-fn ideal(surface: &TriMesh, triangle: [u32; 3], shells: &[Shell], heights: &[f64]) -> f64 {
-    let thinnest = |v: u32| {
-        let depths = depths(shells, v as usize);
-        let steps = depths.iter().scan(0.0, |before, &depth| Some(depth - std::mem::replace(before, depth)));
-        steps.fold(1.0, f64::min) * heights[v as usize]
-    };
-    let height = triangle.map(thinnest).into_iter().fold(0.0, f64::max);
-    let [a, b, c] = triangle.map(|v| surface.points[v as usize]);
-    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-    (height / longest.hypot(height)).max(f64::MIN_POSITIVE)
 }
 
 /// Minimum height of a tetrahedron over its longest edge; negative if it is inverted.

@@ -13,13 +13,13 @@ use anastomesh_mesh::adjacency::vertices_of;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
 /// Maximum passes that make shells thinner.
-const MAX_PASSES: usize = 60;
+const MAX_PASSES: usize = 30;
 /// Factor of the thickness at an obstacle, at first and after some passes.
-const FACTORS: [f64; 2] = [0.75, 0.4];
+const FACTORS: [f64; 2] = [0.7, 0.4];
 /// Fraction of the thickness wanted below which the search ends.
 const LEAST: f64 = 1e-3;
 /// Passes with the first factor.
-const PATIENT: usize = 20;
+const PATIENT: usize = 8;
 
 /// Surface with its wall and the shells wanted.
 #[derive(Clone, Copy)]
@@ -64,9 +64,10 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
         is_narrow: true,
     };
     let length = |outer: &[Point3], v: usize| (outer[v] - points[v]).norm();
+    let mut changed: Vec<u32> = (0..wall.len() as u32).collect();
     for pass in 0..MAX_PASSES {
         watch.ask()?;
-        improver.improve(&mut places.wanted);
+        improver.improve(&changed, &mut places.wanted);
         let stack = Stack::of_copies(wall, numbers.clone(), copies(surface, &on_wall, &places.wanted, shells));
         let mut obstacles = stack.turned();
         let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
@@ -90,6 +91,7 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
             return stuck(t, reason);
         }
         places.wanted = outer;
+        changed = improver.around_vertices(obstacles.into_iter().flatten());
     }
     stuck(wall[0], Stuck::Budget)
 }
