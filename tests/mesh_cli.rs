@@ -64,7 +64,7 @@ fn layers_go_all_along_the_wall_and_caps_stay_flat() {
         (&["--layers", "3", "--layer-thickness", "1"][..], &["0.001 to 0.8"][..]),
         (&["--prisms"], &["--prisms needs --layers"]),
         (&["--layers", "3", "--prisms", "--data", "radius"], &["--data"]),
-        (&["--layers", "3", "--prisms", "--format", "medit"], &["--prisms", ".vtu or .msh"]),
+        (&["--layers", "3", "--prisms", "--format", "medit"], &["--prisms", ".vtu, .pvtu or .msh"]),
         (&["--layers", "3", "--joint", "woven"], &["joint style disc"]),
         (&["--core", "0"], &["core", "0.5"]),
     ] {

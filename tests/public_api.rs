@@ -6,7 +6,7 @@ use std::path::Path;
 const CRATES: [&str; 5] = ["io", "mesh", "network", "skeleton", "tet"];
 
 /// Maximum number of public names of the root crate, without those of the crates that it re-exports.
-const MOST_NAMES: usize = 95;
+const MOST_NAMES: usize = 103;
 
 /// Names that a `pub use` brings in.
 fn used(path: &str) -> Vec<String> {

@@ -29,7 +29,7 @@ fn wall_and_tissue_are_valid_regions() {
     let out = folder.path().join("organ.vtu");
     let done = mesh(&network, &out, &["--wall", "0.2r", "--annulus", "0.1r:1", "--tissue", "box", "--split-regions"]);
     assert_code(&done, 0);
-    let said = stdout(&done);
+    let said = stderr(&done) + &stdout(&done);
     for row in ["lumen: ", "wall: ", "annulus: ", "tissue: ", "full thickness at ", "organ_annulus.vtu"] {
         assert!(said.contains(row), "{row}\n{said}");
     }

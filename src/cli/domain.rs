@@ -9,14 +9,16 @@ use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
 use crate::domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh_io::network::NetworkFormat;
 use anastomesh_io::surface::read_surface;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Regions")]
 pub struct DomainArgs {
-    /// Vessel wall around the lumen, by its thickness: a length (0.05, 5um), a share of the radius (0.2r), a sum of these
-    /// (5um+0.1r), or the name of an array of the network
-    #[arg(long, value_name = "THICKNESS", value_parser = checked::<ThicknessArg>)]
+    /// Vessel wall of this thickness: 0.05, 5um, 0.2r (r: radius), 5um+0.1r
+    ///
+    /// The name of an array gives the thickness at each node.
+    #[arg(long, value_name = "THICKNESS", value_parser = checked::<ThicknessArg>, allow_hyphen_values = true)]
     wall: Option<String>,
     /// Number of layers of the vessel wall
     #[arg(long, value_name = "N", default_value_t = 2, requires = "wall")]
@@ -25,13 +27,13 @@ pub struct DomainArgs {
     #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = number, requires = "wall", allow_negative_numbers = true)]
     wall_growth: f64,
     /// Perivascular space around the wall, or around the lumen without one; THICKNESS as for `--wall`
-    #[arg(long, value_name = "THICKNESS[:LAYERS]", value_parser = checked::<LayeredArg>)]
+    #[arg(long, value_name = "THICKNESS[:LAYERS]", value_parser = checked::<LayeredArg>, allow_hyphen_values = true)]
     annulus: Option<String>,
     /// Further shell outside these, for example `adventitia=0.1r:2`; repeatable, from the inside outwards
     #[arg(long, value_name = "NAME=THICKNESS[:LAYERS]", value_parser = checked::<ShellArg>)]
     shell: Vec<String>,
-    /// Tissue around the vessels: a box with a margin, or the inside of a closed surface (.stl, .ply, .obj, .off, .vtp)
-    #[arg(long, value_name = "box[:MARGIN]|SURFACE", value_parser = checked::<TissueArg>)]
+    /// Tissue around the vessels: box, box:MARGIN, or a closed surface
+    #[arg(long, value_name = "SHAPE", value_parser = checked::<TissueArg>)]
     tissue: Option<String>,
     /// Maximum edge length in the tissue (default: growth alone determines it)
     #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "tissue", allow_negative_numbers = true)]
@@ -166,6 +168,12 @@ impl ThicknessArg {
             }
             Self::Array(name) => name,
         };
+        if let Ok(NetworkFormat::Swc) = NetworkFormat::of(&network.network) {
+            let path = network.network.display();
+            return Err(Failure::input(format!(
+                "{path}: SWC has no array '{name}': give a length or a share of the radius"
+            )));
+        }
         // The reader takes the array for radii.
         let options = network.options(true).radius_array(name.clone()).radius(None).diameters(false).radius_scale(None);
         let file = network.file_with(&options)?;

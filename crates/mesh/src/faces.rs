@@ -378,7 +378,8 @@ struct Ends {
     outer: Vec<OuterFace>,
 }
 
-/// Sums of hashes in a table: the upper bits are the exclusive or of the hashes, the lowest two the number of sides, at most 3.
+/// Sums of hashes in a table. The upper bits are the exclusive or of the hashes, and the lowest two the number of sides, at
+/// most 3.
 struct Sums {
     table: Vec<u64>,
     shift: u32,

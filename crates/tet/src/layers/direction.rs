@@ -60,8 +60,8 @@ impl Directions {
     }
 }
 
-/// Greatest minimum cosine between a direction and the reversed normals of the triangles at a vertex; 0 if no direction
-/// leads away from all of them.
+/// Greatest minimum cosine between a direction and the reversed normals at a vertex. 0 if no direction leads away from all
+/// triangles.
 pub fn openness(normals: &[Vec3]) -> f64 {
     let way = inward_direction(normals);
     if way == Vec3::zeros() { 0.0 } else { steepness(&way, normals) }

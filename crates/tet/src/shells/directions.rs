@@ -1,6 +1,6 @@
 //! Outward directions at the vertices of a wall. At rims they lie in the plane of the cap.
 
-use super::of_caps;
+use super::shell::of_caps;
 use crate::layers::Directions;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};

@@ -1,7 +1,7 @@
 //! Total thickness of the shells at each vertex, before prisms are tested.
 //!
-//! Three limits apply besides the thickness wanted: the space up to the next surface, the convergence of directions around
-//! concave places, and a gradual change along the wall.
+//! Three limits apply besides the thickness wanted. They are the space up to the next surface, the convergence of directions
+//! around concave places, and a gradual change along the wall.
 
 use crate::layers::{clear_widths, lower};
 use anastomesh_mesh::TriMesh;

@@ -1,6 +1,6 @@
 //! Local search for outer positions where prisms are inverted or much flatter than their thickness requires.
 
-use super::{Shell, depths};
+use super::shell::{Shell, depths};
 use crate::layers::{Numbers, toward};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::adjacency::Incidence;

@@ -3,7 +3,7 @@
 //! Each wall vertex has one outer position per shell on a straight line. Each wall triangle spans prisms between these,
 //! which are cut into tetrahedra as those of inner layers are (`layers`). At flat caps the shells end in flat rings. All
 //! prisms are positive by the exact predicate, and the outer surface does not intersect itself. A map without inversions
-//! that is one to one on the boundary is one to one inside, so the shells and a mesh of the inside form one valid mesh.
+//! that is one to one on the boundary is one to one inside. So the shells and a mesh of the inside form one valid mesh.
 //!
 //! Where the outside is too narrow, or the surface is so curved that prisms would invert, the shells become thinner
 //! (`heights`, `settle`). They never end. Poor prisms get other outer positions (`improve`).
@@ -12,54 +12,23 @@ mod directions;
 mod heights;
 mod improve;
 mod settle;
+mod shell;
 #[cfg(test)]
 mod tests;
 
 use crate::error::{InputArray, TetError};
 use crate::input;
-use crate::layer::Layers;
 use crate::plc::InputKind;
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
 use settle::{Given, Settled, settle};
+pub use shell::Shell;
+use shell::{first_layers, of_caps};
 
 /// Fraction of the thickness asked for below which shells count as thin.
 const THIN: f64 = 0.5;
-
-/// One shell. Lengths are in the unit of the surface.
-///
-/// ```
-/// use anastomesh_tet::Shell;
-///
-/// let wall = Shell::new(vec![0.1; 42]).layers(3).growth(1.5);
-/// assert_eq!(wall.layers, 3);
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Shell {
-    /// Thickness wanted at each point of the surface, above 0.
-    pub thickness: Vec<f64>,
-    /// Number of layers of prisms, at least 1.
-    pub layers: u32,
-    /// Ratio of the thickness of each layer to that of the previous one, outwards.
-    pub growth: f64,
-}
-
-anastomesh_mesh::setters!(Shell { layers: u32, growth: f64 });
-
-impl Shell {
-    /// Shell of two equal layers.
-    pub fn new(thickness: Vec<f64>) -> Self {
-        Self { thickness, layers: 2, growth: 1.0 }
-    }
-
-    /// Layers of this shell, without a thickness.
-    fn spacing(&self) -> Layers {
-        Layers::default().count(self.layers).growth(self.growth)
-    }
-}
 
 /// Shells around a surface. Points are numbered after those of the surface: index `surface.points.len() + i` is `points[i]`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -157,31 +126,6 @@ fn check(surface: &TriMesh, caps: &[Option<u32>], shells: &[Shell]) -> Result<()
     Ok(())
 }
 
-/// Fraction of the distance to the outer position at which each copy of a point lies, shell by shell.
-fn depths(shells: &[Shell], v: usize) -> Vec<f64> {
-    let total: f64 = shells.iter().map(|shell| shell.thickness[v]).sum();
-    let mut before = 0.0;
-    let mut all = Vec::new();
-    for shell in shells {
-        let own = shell.thickness[v] / total;
-        all.extend(shell.spacing().depths().into_iter().map(|depth| before + own * depth));
-        before += own;
-    }
-    // The last one is the outer position, whatever rounding makes of the sum.
-    all.pop();
-    all.push(1.0);
-    all
-}
-
-/// First layer of each shell, and the number of all layers.
-fn first_layers(shells: &[Shell]) -> Vec<u32> {
-    let ends = shells.iter().scan(0, |sum, shell| {
-        *sum += shell.layers;
-        Some(*sum)
-    });
-    std::iter::once(0).chain(ends).collect()
-}
-
 impl Settled<'_> {
     /// Result of the growth.
     fn shells(self, given: &Given) -> Shells {
@@ -208,12 +152,4 @@ impl Settled<'_> {
         made.points = stack.into_points().split_off(given.surface.points.len());
         made
     }
-}
-
-/// Triangles of each cap, by cap.
-fn of_caps(surface: &TriMesh, caps: &[Option<u32>]) -> Vec<(u32, Vec<[u32; 3]>)> {
-    let mut all: Vec<(u32, [u32; 3])> =
-        caps.iter().zip(&surface.triangles).filter_map(|(cap, t)| cap.map(|cap| (cap, *t))).collect();
-    all.sort_by_key(|(cap, _)| *cap);
-    all.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|(_, t)| *t).collect())).collect()
 }

@@ -3,7 +3,7 @@
 use super::directions::directions;
 use super::heights::heights;
 use super::improve::Improver;
-use super::{Shell, depths, of_caps};
+use super::shell::{Shell, depths, of_caps};
 use crate::contacts::contacts;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::layers::{Numbers, Places, Stack, Ways, rims, toward};

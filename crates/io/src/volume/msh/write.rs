@@ -216,7 +216,7 @@ fn write_elements(
         }
     }
     let by_region = match mesh.whole() {
-        Some(whole) if volumes.len() > 1 => by_region(whole),
+        Some(whole) if volumes.iter().any(|volume| volume.region.is_some()) => by_region(whole),
         _ => Vec::new(),
     };
     for (i, volume) in volumes.iter().enumerate().take(filled) {
