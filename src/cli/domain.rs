@@ -228,8 +228,8 @@ impl DomainArgs {
 
     /// Options as command-line text.
     pub fn typed(&self) -> String {
-        let mut text = String::new();
-        let mut add = |option: &str, value: &dyn fmt::Display| text += &format!(" --{option} {value}");
+        let mut words = Vec::new();
+        let mut add = |option: &str, value: &dyn fmt::Display| words.push(format!(" --{option} {value}"));
         if let Some(wall) = &self.wall {
             add("wall", wall);
             add("wall-layers", &self.wall_layers);
@@ -243,7 +243,7 @@ impl DomainArgs {
             add("tissue-growth", &self.tissue_growth);
         }
         self.without.iter().for_each(|region| add("without", region));
-        text
+        words.concat()
     }
 }
 

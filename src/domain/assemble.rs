@@ -41,7 +41,9 @@ impl<'a> Layout<'a> {
         on_vessels.dedup();
         let mut number = vec![u32::MAX; count + shells.points.len()];
         (0..).zip(&on_vessels).for_each(|(i, &v)| number[v as usize] = i);
-        triangles.iter_mut().for_each(|t| *t = t.map(|v| number[v as usize]));
+        for t in &mut triangles {
+            *t = t.map(|v| number[v as usize]);
+        }
         let place = |&v: &u32| match (v as usize).checked_sub(count) {
             Some(i) => shells.points[i],
             None => lumen.surface.points[v as usize],
@@ -65,7 +67,7 @@ impl<'a> Layout<'a> {
 
 /// Faces with their patches.
 #[derive(Default)]
-struct Faces {
+struct Labelled {
     faces: Vec<[u32; 3]>,
     patches: Vec<i32>,
     regions: Vec<i32>,
@@ -73,7 +75,7 @@ struct Faces {
     list: Vec<Patch>,
 }
 
-impl Faces {
+impl Labelled {
     /// Adds faces under a region to a patch.
     fn add(&mut self, name: &str, region: i32, faces: impl IntoIterator<Item = [u32; 3]>) {
         let next = self.list.iter().map(|patch| patch.id).max().unwrap_or(0) + 1;
@@ -121,7 +123,7 @@ pub fn assemble(
         tet_block.resize(mesh.tets.len(), tissue_id);
     }
 
-    let mut faces = Faces { list: lumen.patches, ..Faces::default() };
+    let mut faces = Labelled { list: lumen.patches, ..Labelled::default() };
     let name_of = |region: i32| regions[(region - LUMEN_ID) as usize].name.as_str();
     let beyond = |region: i32| regions.get((region + 1 - LUMEN_ID) as usize).map(|next| next.name.as_str());
     let side = |region: i32| match (beyond(region), region) {
@@ -151,7 +153,7 @@ pub fn assemble(
         let organ = &layout.outside.triangles[layout.outside.triangles.len() - layout.of_organ..];
         faces.add("organ", tissue_id, organ.iter().map(|t| t.map(of_tissue)));
     }
-    let Faces { faces, patches: boundary_patch, regions: boundary_block, list, .. } = faces;
+    let Labelled { faces, patches: boundary_patch, regions: boundary_block, list, .. } = faces;
     let volume = VolumeMesh { mesh, tet_block, boundary: faces, boundary_block, boundary_patch, patches: list };
     let (out, kept): (Vec<NamedRegion>, Vec<NamedRegion>) =
         regions.into_iter().partition(|region| plan.without.contains(&region.name));

@@ -207,7 +207,9 @@ impl<'a> Faces<'a> {
 /// Sorts faces whose lower tetrahedra are `count` from `first` on.
 fn by_lower_tet(faces: &[InnerFace], first: u32, count: usize) -> Vec<InnerFace> {
     let mut ends = vec![0_u32; count + 1];
-    faces.iter().for_each(|face| ends[(face.tets[0] - first) as usize + 1] += 1);
+    for face in faces {
+        ends[(face.tets[0] - first) as usize + 1] += 1;
+    }
     for i in 1..ends.len() {
         ends[i] += ends[i - 1];
     }
@@ -420,9 +422,13 @@ impl Ends {
         let hashes: Vec<u64> = (0..sides).map(|handle| hash_of(key(handle))).collect();
         let marks: Vec<u64> = labels.faces.iter().map(|&face| hash_of(face_key(face))).collect();
         let mut sums = Sums::new(hashes.len() + marks.len());
-        hashes.iter().for_each(|&hash| sums.add(hash, 1));
+        for &hash in &hashes {
+            sums.add(hash, 1);
+        }
         // A slot with 3 sides is never a pair.
-        marks.iter().for_each(|&hash| sums.add(hash, if labelled { 3 } else { 1 }));
+        for &hash in &marks {
+            sums.add(hash, if labelled { 3 } else { 1 });
+        }
         let tet_sides = (0..sides).zip(&hashes).filter(|(_, hash)| !sums.is_pair(**hash));
         let mut rest: Vec<u128> = tet_sides.map(|(handle, _)| packed(key(handle), handle)).collect();
         let skipped = hashes.len() - rest.len();
