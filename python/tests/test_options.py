@@ -122,7 +122,8 @@ def test_words_of_the_command_line() -> None:
     assert of["refine"].words(True) == ["--refine"] and of["refine"].words(7) == ["--refine=7"]
     assert of["refine"].words(False) == [] and of["report"].words(None) == []
     assert of["roots"].words(["1", "x"]) == ["--root=1", "--root=x"]
-    assert of["data"].words(["radius", "node"]) == ["--data=radius,node"] and of["data"].words("node") == ["--data=node"]
+    data = keywords(options.MeshOptions)["data"]
+    assert data.words(["radius", "node"]) == ["--data=radius,node"] and data.words("node") == ["--data=node"]
     assert of["size"].words((300, 200)) == ["--size=300x200"] and of["at"].words([-1, 0.5, 2]) == ["--at=-1,0.5,2"]
     filling = keywords(options.TetrahedralizeOptions)
     assert filling["refine"].words(False) == ["--no-refine"] and filling["refine"].words(True) == []

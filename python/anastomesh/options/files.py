@@ -11,6 +11,14 @@ class CapOptions(TypedDict, total=False):
     no_caps: Annotated[bool, Option("Leave the inlets and outlets of a boundary open, without caps", False)]
 
 
+class RegionFileOptions(TypedDict, total=False):
+    """Files of regions"""
+
+    split_regions: Annotated[
+        bool, Option("Write each region to a file beside the output, too, with the ids of the whole mesh", False)
+    ]
+
+
 class FileOptions(TypedDict, total=False):
     """File"""
 

@@ -1,7 +1,7 @@
 """Keyword arguments of each function."""
 
 from .common import ConfigOptions, MemoryOptions, PageOptions, ThreadOptions
-from .files import CapOptions, FileOptions
+from .files import CapOptions, FileOptions, RegionFileOptions
 from .filling import ComplexOptions, FillingOptions
 from .flow import FlowOptions
 from .growth import GrowthOptions
@@ -110,7 +110,7 @@ class CheckOptions(MemoryOptions, PageOptions, ThreadOptions, ConfigOptions, tot
     """Keyword arguments of ``check``."""
 
 
-class ConvertOptions(FileOptions, CapOptions, MemoryOptions, ThreadOptions, ConfigOptions, total=False):
+class ConvertOptions(FileOptions, CapOptions, RegionFileOptions, MemoryOptions, ThreadOptions, ConfigOptions, total=False):
     """Keyword arguments of ``convert`` and of ``save``."""
 
 
