@@ -12,6 +12,7 @@ mod config;
 mod convert;
 mod domain;
 mod dual;
+mod edge_values;
 mod exit;
 mod fidelity;
 mod flow;

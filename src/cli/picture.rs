@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::edge_values::EdgeValues;
 use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::above_zero;
@@ -11,7 +12,7 @@ use crate::picture::{
     Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
     PlaneWish, Shown,
 };
-use crate::pipeline::{Datum, EdgeValues, VesselData};
+use crate::pipeline::{Datum, VesselData};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;

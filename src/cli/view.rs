@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::check::check_opened;
 use super::common::{ended, thread_pool};
+use super::edge_values::EdgeValues;
 use super::exit::{Exit, Failure};
 use super::kind::{DRAWN, FileKind, OpenedMesh, boundary_of, left_in};
 use super::limits;
@@ -16,7 +17,7 @@ use super::picture::vessels;
 use super::values::{ArrayName, ArrayValues};
 use crate::block::BlockDump;
 use crate::picture::Legend;
-use crate::pipeline::{Datum, EdgeValues, VesselData};
+use crate::pipeline::{Datum, VesselData};
 use crate::view::{FaultGroup, Scale, ViewerPage, Wall, WallOptions, add_network, add_tets, add_values};
 use anastomesh_io::surface::read_surface;
 use anastomesh_io::{ensure_text_writable, write_text};

@@ -37,7 +37,6 @@ mod terminals;
 mod tests;
 mod timing;
 mod tips;
-mod values;
 mod whole;
 
 pub use caps::{CapRow, Caps, CapsError, Outlets};
@@ -66,5 +65,4 @@ pub(crate) use store::{KeyMaker, fingerprint};
 pub use terminals::NotATerminal;
 pub use timing::Clock;
 pub use timing::StageTime;
-pub use values::EdgeValues;
 pub use whole::{LeftWhole, Whole};
