@@ -19,6 +19,8 @@
 //! |---|---|
 //! | mesh a network | [`meshing::Run`] |
 //! | grow, repair or refine a network | [`network`] |
+//! | add vessel walls and tissue to a mesh | [`domain`] |
+//! | compute flow, outlet models and reduced-order models | [`flow`] |
 //! | fill a surface with tetrahedra | [`tet::Tetrahedralizer`] |
 //! | check a mesh | [`check::check_volume`], [`check::check_tets`] |
 //! | read and write files | [`io`] |
@@ -38,14 +40,11 @@ mod block;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
-mod domain;
 mod fidelity;
 mod partition;
 #[cfg(feature = "cli")]
 mod picture;
 mod pipeline;
-#[cfg(feature = "cli")]
-mod reduced;
 #[cfg(feature = "cli")]
 mod report;
 mod run;
@@ -55,6 +54,8 @@ mod view;
 #[cfg(feature = "woven")]
 mod woven;
 
+pub use anastomesh_domain as domain;
+pub use anastomesh_flow as flow;
 pub use anastomesh_io as io;
 pub use anastomesh_mesh as mesh;
 pub use anastomesh_mesh::progress::{Progress, Stage};
@@ -76,19 +77,13 @@ pub mod meshing {
     pub use crate::run::{
         Attempt, Defect, Fault, Limits, MeshingError, NetworkMesh, Networks, PreparedRun, RefinedAxis, Run, Strategy,
     };
-    // Regions around the lumen.
-    pub use crate::domain::{
-        Domain, DomainError, DomainPlan, DomainPlanError, ShellPlan, ShellsReport, Thickness, TissuePlan, TissueShape,
-    };
     // Its steps and reports.
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;
     pub use crate::pipeline::{
-        BlockCounts, CapRow, Caps, CapsError, Datum, Difference, Estimate, FailedBlock, FilledLoops, FlowError,
-        FlowPlan, Forecast, FusedBlock, Inflow, Inlet, InletReason, Inlets, JointStyle, LeftWhole, Manifest, Meeting,
-        MeshPlan, MeshSize, Meshed, NoShard, NoTerminal, NotATerminal, OutletKind, OutletPlan, OutletSplit, Outlets,
-        PlanError, Reference, Retry, Role, RunError, RunReport, Shard, ShareReport, StageTime, Store, StoreError,
-        Stored, ThinBlock, TooLarge, VesselData, Whole, make_share, mesh_into, mesh_network,
+        BlockCounts, Difference, Estimate, FailedBlock, FilledLoops, Forecast, FusedBlock, JointStyle, LeftWhole,
+        Manifest, Meeting, MeshPlan, MeshSize, Meshed, NoShard, PlanError, Retry, Role, RunError, RunReport, Shard,
+        ShareReport, StageTime, Store, StoreError, ThinBlock, TooLarge, Whole, make_share, mesh_into, mesh_network,
     };
 }
 

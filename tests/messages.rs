@@ -19,6 +19,18 @@ const CALLS: [&str; 9] = [
     ".note(",
 ];
 
+/// Source folders of the packages whose messages users see.
+const PACKAGES: [&str; 8] = [
+    "src",
+    "crates/mesh/src",
+    "crates/skeleton/src",
+    "crates/network/src",
+    "crates/tet/src",
+    "crates/io/src",
+    "crates/flow/src",
+    "crates/domain/src",
+];
+
 /// Sources of a folder, in order.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -107,9 +119,7 @@ fn each_is_written_down() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut groups: BTreeMap<String, String> = BTreeMap::new();
     let mut count = 0;
-    for package in
-        ["src", "crates/mesh/src", "crates/skeleton/src", "crates/network/src", "crates/tet/src", "crates/io/src"]
-    {
+    for package in PACKAGES {
         for path in sources(&root.join(package)) {
             let found = messages(&fs::read_to_string(&path).expect("a source"));
             let inside = path.strip_prefix(root.join(package)).expect("a source of ours");

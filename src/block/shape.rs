@@ -1,15 +1,7 @@
 //! Quality measures for building blocks.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::quality::radius_ratio;
-
-/// Radius ratio of a triangle, 2 r / R of incircle and circumcircle, in [0, 1]; 1 if equilateral.
-pub(crate) fn triangle_ratio(p: &[Point3; 3]) -> f64 {
-    let (a, b, c) = ((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());
-    // Without the area: 2 r / R = (b+c−a)(c+a−b)(a+b−c) / abc.
-    let abc = a * b * c;
-    if abc > 0.0 { ((b + c - a) * (c + a - b) * (a + b - c) / abc).max(0.0) } else { 0.0 }
-}
+use anastomesh_mesh::quality::{radius_ratio, triangle_ratio};
 
 /// Cosine of the angle (45°) between normal and outward direction up to which a wall triangle has full quality. Walls
 /// of tapers and bends deviate less, folds more.

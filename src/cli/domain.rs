@@ -8,7 +8,7 @@ use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
-use crate::domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh_domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
 use anastomesh_io::network::NetworkFormat;
 use anastomesh_io::surface::read_surface;
 

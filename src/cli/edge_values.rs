@@ -1,9 +1,9 @@
 //! Values of a network's vessels, at each point of its mesh.
 
-use crate::fidelity::Tubes;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::Tubes;
 use rayon::prelude::*;
 
 /// Values at both ends of each edge. A point has the value of the vessel whose wall is nearest, linear along the vessel.

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::numbers::{above_zero, fraction, number};
-use crate::pipeline::{FlowPlan, Inflow, OutletKind, OutletPlan, OutletSplit, Outlets, Reference};
+use anastomesh_flow::{FlowPlan, Inflow, OutletKind, OutletPlan, OutletSplit, Outlets, Reference};
 use anastomesh_io::flow::{FlowTable, Profile, StructuredTree};
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::units::counted;

@@ -1,6 +1,7 @@
 //! Command-line options that remedy errors and notes of the library.
 
-use crate::pipeline::{FlowError, RunError, StoreError, TooLarge};
+use crate::pipeline::{RunError, StoreError, TooLarge};
+use anastomesh_flow::FlowError;
 use anastomesh_io::faults::FileError;
 use anastomesh_io::network::{NetworkFileError, NetworkFormat, NetworkNote, NodeNames};
 use anastomesh_io::surface::SurfaceFormat;

@@ -4,8 +4,9 @@ use super::common::print;
 use super::exit::{Exit, Failure};
 use super::hint;
 use super::network::{NetworkArgs, PreparedNetwork};
-use crate::pipeline::Inlets;
 use crate::report::info::NetworkInfo;
+use crate::report::inlets;
+use anastomesh_flow::Inlets;
 use anastomesh_network::PrepareParams;
 use anastomesh_skeleton::NodeId;
 
@@ -29,6 +30,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     info.nodes_without_radius = report.radii.len();
     info.unit = args.network.units.map(|units| units.names()[1].to_owned());
     let name = |node| names.of(NodeId(skeleton.node(NodeId(node)).original));
-    print(args.json, &info, || format!("{}{}", info.text(&name), inlets.remarks().join("\n")))?;
+    print(args.json, &info, || format!("{}{}", info.text(&name), inlets::remarks(&inlets).join("\n")))?;
     Ok(Exit::Fine)
 }

@@ -25,14 +25,16 @@ use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
-use crate::domain::{Domain, DomainError, DomainPlan, ShellsReport};
 use crate::fidelity::{Along, Changes, Fidelity};
-use crate::pipeline::{Caps, Datum, Estimate, FlowPlan, JointStyle, MeshPlan, RunReport, Shard, VesselData};
+use crate::pipeline::{Estimate, JointStyle, MeshPlan, RunReport, Shard};
 use crate::report::caps;
+use crate::report::inlets;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
 use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
+use anastomesh_domain::{Domain, DomainError, DomainPlan, ShellsReport};
+use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_io::{ensure_text_writable, write_text};
@@ -204,7 +206,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
     let read = remarks(notes, &networks.prepare, &networks.names, args.common.verbose);
-    for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
+    for remark in read.into_iter().chain(inlets::remarks(inlets)).chain(FlowArgs::remark(cut_short, &networks.names)) {
         bars.note(&remark);
     }
     let work = if args.dry_run { None } else { args.work.open(shard, || prepared.manifest())? };

@@ -17,11 +17,12 @@ use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::run::{failure, remarks};
 use super::stop::{NOTHING_KEPT, Stop};
-use crate::pipeline::{FlowError, FlowPlan, FlowSolution, InletSite};
-use crate::reduced::{Along, ModelOptions, ResultFluid, Supply, VesselFlow, reduced_model};
 use crate::report::flow::{FlowSummary, ResultSummary, arrays, result_arrays, result_table, table};
+use crate::report::inlets;
 use crate::report::rows::Ended;
 use crate::run::{MeshingError, PreparedRun, Run};
+use anastomesh_flow::{Along, ModelOptions, ResultFluid, Supply, VesselFlow, reduced_model};
+use anastomesh_flow::{FlowError, FlowPlan, FlowSolution, InletSite};
 use anastomesh_io::network::{
     NodeNames, Stiffness, ensure_network_writable, ensure_reduced_writable, write_network, write_reduced,
 };
@@ -183,7 +184,9 @@ impl Args {
         let prepared = run.prepared().map_err(|e| self.explain(e))?;
         let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
         let read = remarks(notes, &networks.prepare, &networks.names, self.common.verbose);
-        for remark in read.into_iter().chain(inlets.remarks()).chain(FlowArgs::remark(cut_short, &networks.names)) {
+        for remark in
+            read.into_iter().chain(inlets::remarks(inlets)).chain(FlowArgs::remark(cut_short, &networks.names))
+        {
             bars.note(&remark);
         }
         prepared.refined(None, bars).map_err(|e| self.explain(e))
@@ -256,7 +259,7 @@ impl Args {
         Ok(ResultSummary::of(&along, &result.name, result.cells.len()))
     }
 
-    fn write_table(&self, rows: &[crate::reduced::VesselRow], names: &NodeNames) -> Result<(), Failure> {
+    fn write_table(&self, rows: &[anastomesh_flow::VesselRow], names: &NodeNames) -> Result<(), Failure> {
         let failed = |why: &dyn std::fmt::Display| Failure::unwritable(&self.output, why);
         let text = table(rows, names).map_err(|e| failed(&e))?;
         write_text(&self.output, &text).map_err(|e| failed(&e))

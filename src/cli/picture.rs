@@ -12,7 +12,7 @@ use crate::picture::{
     Background, Camera, Canvas, Colour, Direction, Image, Legend, MeshPicture, NetworkPicture, Opening, Outline,
     PlaneWish, Shown,
 };
-use crate::pipeline::{Datum, VesselData};
+use anastomesh_flow::{Datum, VesselData};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;

@@ -1,9 +1,9 @@
 //! Wall error along the vessels, as a function of the position between their ends.
 
-use super::tubes::Tubes;
 use super::wall::wall_points;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::Tubes;
 use rayon::prelude::*;
 use std::io;
 

@@ -1,7 +1,7 @@
 //! Comparison of the given axis with the meshed axis.
 
 use super::spread::Spread;
-use super::tubes::Tubes;
+use anastomesh_skeleton::Tubes;
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use rayon::prelude::*;
 use serde::Serialize;

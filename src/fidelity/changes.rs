@@ -3,9 +3,9 @@
 //! The repairs report what they do in lengths. Here a dropped vessel counts by its length outside the lumen, in its radii.
 //! A spur within a thick vessel is no loss, and a thin branch of the same length is one.
 
-use super::tubes::Tubes;
 use anastomesh_mesh::Cap;
 use anastomesh_network::{PrepareReport, RefineReport, TouchedBy, Treatment};
+use anastomesh_skeleton::Tubes;
 use anastomesh_skeleton::{Branch, NodeId, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;

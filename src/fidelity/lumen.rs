@@ -3,8 +3,8 @@
 //! Each tube is sampled. A sample inside n tubes has weight 1/n, so common volume counts once. At inner nodes a ball
 //! fills the wedge between tubes at an angle, except beyond the end of a vessel.
 
-use super::tubes::Tubes;
 use anastomesh_mesh::geometry::{Aabb, Point3, Section, Vec3, point_segment};
+use anastomesh_skeleton::Tubes;
 use anastomesh_skeleton::{Adjacency, EdgeId, NodeId, Skeleton};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

@@ -12,11 +12,10 @@ mod networks;
 mod radius;
 mod spread;
 mod text;
-mod tubes;
 mod wall;
 
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::{Skeleton, Tubes};
 use serde::Serialize;
 use std::io;
 
@@ -27,7 +26,6 @@ pub use radius::{RadiusReference, SectionErrors};
 pub use spread::Spread;
 #[cfg(feature = "cli")]
 pub(crate) use text::share;
-pub use tubes::Tubes;
 
 /// Fidelity figures of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

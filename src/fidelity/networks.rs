@@ -1,8 +1,8 @@
 //! Comparison of two networks, without a mesh.
 
 use super::radius::{RadiusReference, SectionErrors};
-use super::{Compared, Displacements, Fidelity, Spread, Tubes, lumen, lumen_of};
-use anastomesh_skeleton::{EdgeId, Skeleton};
+use super::{Compared, Displacements, Fidelity, Spread, lumen, lumen_of};
+use anastomesh_skeleton::{EdgeId, Skeleton, Tubes};
 use rayon::prelude::*;
 
 /// Samples per edge.

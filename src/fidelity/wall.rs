@@ -1,10 +1,10 @@
 //! Comparison of the mesh wall with the given tubes.
 
 use super::spread::Spread;
-use super::tubes::Tubes;
 use anastomesh_mesh::WALL;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::source::MeshSource;
+use anastomesh_skeleton::Tubes;
 use rayon::prelude::*;
 use std::io;
 

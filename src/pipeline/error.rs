@@ -6,8 +6,8 @@ use super::estimate::TooLarge;
 use super::plan::PlanError;
 use super::report::RunReport;
 use super::store::StoreError;
-use super::terminals::NotATerminal;
 use crate::partition::PartitionError;
+use anastomesh_flow::NotATerminal;
 use anastomesh_mesh::progress::Cancelled;
 use anastomesh_mesh::units::counted;
 

@@ -2,7 +2,7 @@
 
 use super::error::RunError;
 use super::plan::MeshPlan;
-use super::run::{Meshed, Stored, mesh_timed};
+use super::run::{Meshed, mesh_timed};
 #[cfg(feature = "woven")]
 use super::smoothed::mesh_smoothed;
 use super::store::Store;
@@ -44,7 +44,7 @@ pub(crate) fn mesh_in_memory(
     if plan.smooths_joints() {
         return mesh_smoothed(&store, network, plan, progress, clock);
     }
-    let Stored { whole, expectation, check, mut report, network } =
+    let Meshed { mesh: whole, expectation, check, mut report, network } =
         mesh_timed(&store, network, plan, &|_| Ok(()), progress, clock)?;
     let mesh = clock.time(progress, Stage::Merge, 0, || gather(&whole))?;
     report.stages = clock.stages();

@@ -15,10 +15,10 @@ use super::report::{Meeting, RunReport};
 use super::rounds::RunContext;
 use super::seen::Seen;
 use super::store::Store;
-use super::terminals::{self, TerminalPatches};
 use super::timing::Clock;
 use super::whole::Whole;
 use crate::partition::CutId;
+use anastomesh_flow::TerminalPatches;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::check::parts::PartsCheck;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -27,28 +27,12 @@ use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::split_shared;
 use anastomesh_skeleton::{NodeId, Overlap, Overlaps, Skeleton};
 
-/// Mesh in memory, with its expected topology, check and report.
+/// Mesh of a network, with its expected topology, check and report.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct Meshed {
-    /// Mesh of the network with a labelled boundary.
-    pub mesh: VolumeMesh,
-    /// Expected topology.
-    pub expectation: Expectation,
-    /// Result of the check.
-    pub check: CheckReport,
-    /// Report of the run.
-    pub report: RunReport,
-    /// Network that was meshed: the given one with nodes of more than three vessels split.
-    pub network: Arc<Skeleton>,
-}
-
-/// Mesh with blocks in a store, with its expected topology, check and report.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct Stored<'a> {
-    /// Mesh, to be read in passes.
-    pub whole: Whole<'a>,
+pub struct Meshed<M = VolumeMesh> {
+    /// Mesh with a labelled boundary: in memory, or to be read from its store in passes.
+    pub mesh: M,
     /// Expected topology.
     pub expectation: Expectation,
     /// Result of the check.
@@ -88,7 +72,7 @@ pub fn mesh_into<'a>(
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
-) -> Result<Stored<'a>, RunError> {
+) -> Result<Meshed<Whole<'a>>, RunError> {
     mesh_shared(store, &Arc::new(network.clone()), plan, fits, progress)
 }
 
@@ -99,7 +83,7 @@ pub(crate) fn mesh_shared<'a>(
     plan: &MeshPlan,
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
-) -> Result<Stored<'a>, RunError> {
+) -> Result<Meshed<Whole<'a>>, RunError> {
     mesh_timed(store, network, plan, fits, progress, &mut Clock::default())
 }
 
@@ -110,7 +94,7 @@ pub(super) fn mesh_timed<'a>(
     fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     progress: &'a dyn Progress,
     clock: &mut Clock,
-) -> Result<Stored<'a>, RunError> {
+) -> Result<Meshed<Whole<'a>>, RunError> {
     let job = Job::of(network, plan, store, progress, clock)?;
     let mut run = job.run(clock);
     let mut blocks = run.build(&BTreeSet::new(), None, fits)?;
@@ -136,7 +120,7 @@ pub(super) fn mesh_timed<'a>(
         ask(progress)?;
         report.mesh = whole.size();
         report.stages = clock.stages();
-        return Ok(Stored { whole, expectation, check, report, network: meshed });
+        return Ok(Meshed { mesh: whole, expectation, check, report, network: meshed });
     }
 }
 
@@ -162,7 +146,7 @@ impl<'a, 'b> Job<'a, 'b> {
         plan.validate()?;
         let mut report = RunReport::default();
         let (skeleton, overlaps) = clock.time(progress, Stage::Prepare, 0, || prepare(network, &mut report));
-        let terminals = terminals::assign(&skeleton, &plan.roots)?;
+        let terminals = TerminalPatches::assign(&skeleton, &plan.roots)?;
         announce(&report, progress);
         Ok(Self { skeleton, overlaps, terminals, plan, store, progress, report })
     }

@@ -117,10 +117,10 @@ mod tests {
     use super::super::plan::MeshPlan;
     use super::super::rounds::RunContext;
     use super::super::store::Store;
-    use super::super::terminals;
     use super::super::tests::through_the_crotch;
     use super::super::timing::Clock;
     use super::*;
+    use anastomesh_flow::TerminalPatches;
     use anastomesh_mesh::geometry::{Point3, Vec3};
     use anastomesh_mesh::progress::{Progress, Stage};
     use anastomesh_skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
@@ -171,7 +171,7 @@ mod tests {
     fn a_second_round_looks_at_what_changed_and_at_what_is_near_it() {
         let (skeleton, plan, store) = (Arc::new(many_forks(20)), MeshPlan::default(), Store::in_memory());
         let overlaps = skeleton.overlaps(&skeleton.adjacency());
-        let patches = terminals::assign(&skeleton, &[]).expect("terminals");
+        let patches = TerminalPatches::assign(&skeleton, &[]).expect("terminals");
         let (counts, mut clock) = (Counts::default(), Clock::default());
         let shop = Workshop::new(&skeleton, &plan, &store);
         let mut run = RunContext { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };

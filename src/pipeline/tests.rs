@@ -234,7 +234,7 @@ fn blocks_on_disk_make_the_same_mesh_and_are_found_again() {
     for again in [false, true] {
         let store = store::Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
         let stored = mesh_into(&store, &uneven(), &plan, &|_| Ok(()), &()).expect("meshed");
-        assert_eq!(gather(&stored.whole).expect("read"), in_memory.mesh);
+        assert_eq!(gather(&stored.mesh).expect("read"), in_memory.mesh);
         assert_eq!(stored.check, in_memory.check);
         assert_eq!(stored.report.mesh, in_memory.report.mesh);
         assert!(!again || stored.report.block_times.longest_seconds < 0.05, "found, not made");
@@ -371,13 +371,13 @@ fn what_can_be_meshed_is_kept_on_request() {
 fn some_points_of_a_stored_mesh_are_found_without_the_others() {
     let store = Store::in_memory();
     let stored = mesh_into(&store, &h(40.0), &MeshPlan::default(), &|_| Ok(()), &()).expect("a mesh");
-    let all = gather(&stored.whole).expect("read").mesh.points;
+    let all = gather(&stored.mesh).expect("read").mesh.points;
     for step in [1, 7, all.len() / 3] {
         let ids: Vec<u32> = (0..all.len() as u32).step_by(step).collect();
         let expected: Vec<Point3> = ids.iter().map(|&i| all[i as usize]).collect();
-        assert_eq!(stored.whole.points_of(&ids).expect("read"), expected);
+        assert_eq!(stored.mesh.points_of(&ids).expect("read"), expected);
     }
-    assert!(stored.whole.points_of(&[all.len() as u32]).is_err());
+    assert!(stored.mesh.points_of(&[all.len() as u32]).is_err());
 }
 
 #[test]
@@ -425,7 +425,7 @@ fn a_run_that_is_told_to_stop_stops_and_goes_on_later() {
     let plan = MeshPlan::default();
     let run = |store: &Store, progress: &dyn Progress| {
         let stored = mesh_into(store, &network, &plan, &|_| Ok(()), progress)?;
-        Ok::<_, RunError>((gather(&stored.whole)?, stored.report.retries))
+        Ok::<_, RunError>((gather(&stored.mesh)?, stored.report.retries))
     };
     let whole = run(&Store::in_memory(), &()).expect("a mesh");
     let store = Store::in_memory();

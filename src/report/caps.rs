@@ -1,6 +1,6 @@
 //! CSV table of all inlets and outlets.
 
-use crate::pipeline::{CapRow, Caps};
+use anastomesh_flow::{CapRow, Caps};
 use anastomesh_io::flow::OutletModel;
 use anastomesh_io::network::NodeNames;
 use anastomesh_skeleton::NodeId;

@@ -1,7 +1,7 @@
 //! One-dimensional flow, and results of solvers beside it: tables of vessels, arrays and summaries.
 
-use crate::reduced::{Along, BranchFlow, VesselFlow, VesselRow};
 use crate::report::rows::{Ended, row};
+use anastomesh_flow::{Along, BranchFlow, VesselFlow, VesselRow};
 use anastomesh_io::network::{NetworkArray, NodeNames};
 use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{NodeId, Skeleton};

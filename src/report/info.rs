@@ -1,6 +1,6 @@
 //! Report of `info` on a network.
 
-use crate::pipeline::Inlet;
+use anastomesh_flow::Inlet;
 use anastomesh_mesh::geometry::Aabb;
 use anastomesh_mesh::units::{counted, digits, grouped, number, percent};
 use anastomesh_network::NameOf;

@@ -1,10 +1,10 @@
 //! Short summary of a run: input, mesh, fidelity, validity, output files, time.
 
 use super::rows::{Ended, row};
-use crate::domain::ShellsReport;
 use crate::fidelity::{Changes, Fidelity};
 use crate::pipeline::{Forecast, RunReport, named};
 use crate::run::Attempt;
+use anastomesh_domain::ShellsReport;
 use anastomesh_mesh::check::text::{faults, region_sizes, shape, sizes, tally};
 use anastomesh_mesh::check::{CheckReport, RegionCounts};
 use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, percent, place, rounded, seconds_of};

@@ -1,7 +1,8 @@
 //! Errors of a run.
 
 use super::networks::Networks;
-use crate::pipeline::{CapsError, FlowError, NoTerminal, PlanError, RunError, RunReport, StoreError};
+use crate::pipeline::{PlanError, RunError, RunReport, StoreError};
+use anastomesh_flow::{CapsError, FlowError, NoTerminal};
 use anastomesh_mesh::units::counted;
 use anastomesh_network::RefineError;
 use anastomesh_skeleton::SkeletonError;

@@ -5,11 +5,11 @@ use super::limits::Limits;
 use super::networks::Networks;
 use super::result::NetworkMesh;
 use super::strategy::{self, Attempt, Candidate, Meshing, Strategy};
-use crate::fidelity::Changes;
 use crate::pipeline::{
-    Clock, Estimate, FlowPlan, Forecast, Inlets, KeyMaker, Manifest, MeshPlan, Meshed, RunError, Shard, ShareReport,
-    Store, Stored, TooLarge, Whole, fingerprint, make_share, mesh_in_memory,
+    Clock, Estimate, Forecast, KeyMaker, Manifest, MeshPlan, RunError, Shard, ShareReport, Store, TooLarge, Whole,
+    fingerprint, make_share, mesh_in_memory,
 };
+use anastomesh_flow::{FlowPlan, Inlets};
 use anastomesh_io::network::NetworkNote;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -135,21 +135,7 @@ impl PreparedRun {
         let best = strategy::mesh(networks, &mut meshing);
         let attempts = meshing.attempts;
         let Candidate { stored, networks, attempt } = best?;
-        let Stored { whole: mesh, expectation, check, report, network } = stored;
-        let found = NetworkMesh {
-            mesh,
-            expectation,
-            check,
-            report,
-            network,
-            networks,
-            attempts,
-            kept: attempt,
-            fidelity: None,
-            changes: Changes::default(),
-            caps: None,
-            defects: Vec::new(),
-        };
+        let found = NetworkMesh::of(stored, networks, attempts, attempt);
         found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
 
@@ -174,26 +160,13 @@ impl PreparedRun {
             let (why, instead) = ("woven joints", "--joint disc");
             return Err(RunError::from(TooLarge::Whole { estimate, why, instead, bytes, memory: plan.memory }).into());
         }
-        let Meshed { mesh, expectation, check, report, network } =
-            match mesh_in_memory(&networks.network, &plan, progress) {
-                Ok(meshed) => meshed,
-                Err(error) => return Err(strategy::Failure { error, networks: Box::new(networks) }.into_error()),
-            };
-        let fault = strategy::fault(&check, &report, &plan);
-        let found = NetworkMesh {
-            mesh,
-            expectation,
-            check,
-            report,
-            network,
-            networks,
-            attempts: vec![Attempt { strategy: Strategy::Planned, fault }],
-            kept: 0,
-            fidelity: None,
-            changes: Changes::default(),
-            caps: None,
-            defects: Vec::new(),
+        let made = match mesh_in_memory(&networks.network, &plan, progress) {
+            Ok(made) => made,
+            Err(error) => return Err(strategy::Failure { error, networks: Box::new(networks) }.into_error()),
         };
+        let fault = strategy::fault(&made.check, &made.report, &plan);
+        let attempts = vec![Attempt { strategy: Strategy::Planned, fault }];
+        let found = NetworkMesh::of(made, networks, attempts, 0);
         found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
 }

@@ -6,7 +6,8 @@ use super::limits::Limits;
 use super::networks::Networks;
 use super::strategy::Attempt;
 use crate::fidelity::{Changes, Fidelity, Repairs};
-use crate::pipeline::{Caps, Clock, FlowPlan, MeshPlan, RunReport};
+use crate::pipeline::{Clock, MeshPlan, Meshed, RunReport};
+use anastomesh_flow::{Caps, FlowPlan};
 use anastomesh_io::volume::MeshNotes;
 use anastomesh_mesh::Cap;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -62,24 +63,19 @@ impl<M> NetworkMesh<M> {
         MeshNotes { expectation: Some(expectation), generator, options, regions: Vec::new(), flow }
     }
 
+    /// Result before its evaluation.
+    pub(super) fn of(made: Meshed<M>, networks: Networks, attempts: Vec<Attempt>, kept: usize) -> Self {
+        let Meshed { mesh, expectation, check, report, network } = made;
+        let (fidelity, changes, caps, defects) = (None, Changes::default(), None, Vec::new());
+        Self { mesh, expectation, check, report, network, networks, attempts, kept, fidelity, changes, caps, defects }
+    }
+
     /// Replaces the mesh.
     pub(super) fn with_mesh<N>(self, mesh: N) -> NetworkMesh<N> {
         let Self { expectation, check, report, network, networks, attempts, kept, .. } = self;
         let Self { fidelity, changes, caps, defects, .. } = self;
-        NetworkMesh {
-            mesh,
-            expectation,
-            check,
-            report,
-            network,
-            networks,
-            attempts,
-            kept,
-            fidelity,
-            changes,
-            caps,
-            defects,
-        }
+        let made = Meshed { mesh, expectation, check, report, network };
+        NetworkMesh { fidelity, changes, caps, defects, ..NetworkMesh::of(made, networks, attempts, kept) }
     }
 }
 

@@ -3,13 +3,14 @@
 use super::error::MeshingError;
 use super::limits;
 use super::networks::Networks;
-use crate::fidelity::{Displacements, Tubes, lumen_of};
-use crate::pipeline::{Estimate, MeshPlan, RunError, RunReport, Store, Stored, TooLarge, mesh_shared};
+use crate::fidelity::{Displacements, lumen_of};
+use crate::pipeline::{Estimate, MeshPlan, Meshed, RunError, RunReport, Store, TooLarge, Whole, mesh_shared};
 use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::touching_text;
 use anastomesh_network::{Freedom, RefineParams, refine};
 use anastomesh_skeleton::NodeId;
+use anastomesh_skeleton::Tubes;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -78,7 +79,7 @@ pub struct Attempt {
 
 /// Mesh of an attempt.
 pub(super) struct Candidate<'a> {
-    pub stored: Stored<'a>,
+    pub stored: Meshed<Whole<'a>>,
     pub networks: Networks,
     /// Index of the attempt.
     pub attempt: usize,
@@ -243,7 +244,7 @@ fn difference(Candidate { stored, networks, .. }: &Candidate) -> f64 {
 }
 
 /// Relative difference of a mesh's volume from that of the given lumen.
-fn volume_error(stored: &Stored, networks: &Networks) -> f64 {
+fn volume_error(stored: &Meshed<Whole>, networks: &Networks) -> f64 {
     (stored.check.counts.volume / lumen_of(&networks.outline) - 1.0).abs()
 }
 
@@ -305,7 +306,7 @@ impl<'a> Meshing<'a, '_> {
             }
     }
 
-    fn fault_of(&self, stored: &Stored) -> Option<Fault> {
+    fn fault_of(&self, stored: &Meshed<Whole>) -> Option<Fault> {
         fault(&stored.check, &stored.report, self.plan)
     }
 
@@ -336,11 +337,11 @@ impl<'a> Meshing<'a, '_> {
     fn ended(
         &mut self,
         strategy: Strategy,
-        made: Result<Stored<'a>, RunError>,
+        made: Result<Meshed<Whole<'a>>, RunError>,
         fault: Option<Fault>,
         networks: Networks,
     ) -> Outcome<'a> {
-        let volume = |stored: &Stored| {
+        let volume = |stored: &Meshed<Whole>| {
             let error = self.refine.as_ref().map(|_| volume_error(stored, &networks));
             error.filter(|&error| error > MAX_VOLUME_ERROR).map(Fault::Volume)
         };
@@ -354,9 +355,9 @@ impl<'a> Meshing<'a, '_> {
 
     /// Terminals to retract, by their indices in the file: those that could not be capped, but for named inlets. Of a grown
     /// network only if its mesh lacks nothing else, or there is none.
-    fn open_tips(&self, made: &Result<Stored, RunError>, measured: bool) -> Vec<u32> {
+    fn open_tips(&self, made: &Result<Meshed<Whole>, RunError>, measured: bool) -> Vec<u32> {
         let report = match made {
-            Ok(Stored { report, check, .. }) if measured || lacks_but_caps(check) => report,
+            Ok(Meshed { report, check, .. }) if measured || lacks_but_caps(check) => report,
             Err(RunError::BlocksFailed(report)) => report,
             _ => return Vec::new(),
         };

@@ -3,9 +3,9 @@
 use super::collapse::Collapse;
 use super::rings::{rings, thinned};
 use super::tube::straight;
-use crate::block::triangle_ratio;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::{Aabb, Point3, Vec3};
+use anastomesh_mesh::quality::triangle_ratio;
 use anastomesh_mesh::source::{FacePiece, MeshSource};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

@@ -3,9 +3,10 @@
 use super::flatten::{Flat, FlattenAttempt, flatten};
 use super::region::{Reach, Region, RegionGrowing, WALL};
 use super::relax::EndRelaxation;
-use crate::block::{CutEnd, EndSurface, FlattenFailure, cross, triangle_ratio};
+use crate::block::{CutEnd, EndSurface, FlattenFailure, cross};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::quality::triangle_ratio;
 use anastomesh_mesh::{Kept, TetMesh};
 
 /// Options of trimming.

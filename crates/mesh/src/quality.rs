@@ -64,6 +64,14 @@ impl<'a> Spokes<'a> {
     }
 }
 
+/// Radius ratio of a triangle, 2 r / R of incircle and circumcircle, in [0, 1]; 1 if equilateral.
+pub fn triangle_ratio(p: &[Point3; 3]) -> f64 {
+    let (a, b, c) = ((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());
+    // Without the area: 2 r / R = (b+c−a)(c+a−b)(a+b−c) / abc.
+    let abc = a * b * c;
+    if abc > 0.0 { ((b + c - a) * (c + a - b) * (a + b - c) / abc).max(0.0) } else { 0.0 }
+}
+
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
 pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
     dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))

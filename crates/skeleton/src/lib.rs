@@ -20,6 +20,7 @@
 //! | find overlapping vessels | [`Overlaps`] |
 //! | find where branches can be cut | [`cuttability`], [`course`] |
 //! | measure it | [`Metrics`] |
+//! | find the vessel nearest to a place | [`Tubes`] |
 //! | choose edge lengths | [`SizeAt`], [`resolution`] |
 //!
 //! The crate has no features.
@@ -45,6 +46,7 @@ pub mod resolution;
 mod size_at;
 #[cfg(test)]
 mod tests;
+mod tubes;
 mod walk;
 
 pub use branch::{Branch, Branches, Place};
@@ -59,6 +61,7 @@ pub use groups::LineGroup;
 pub use metrics::{Barrier, Metrics, NARROW, PairGradient, Share};
 pub use overlap::{Overlap, Overlaps};
 pub use size_at::{BadSize, FineFork, LEAST_SIZE, NodeSizes, SizeAt};
+pub use tubes::{NearestTube, Tubes};
 
 pub use chains::Chains;
 pub use groups::Kinship;

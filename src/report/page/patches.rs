@@ -2,7 +2,7 @@
 
 use super::figures::{LengthUnit, figure};
 use super::html::Section;
-use crate::pipeline::{CapRow, Caps};
+use anastomesh_flow::{CapRow, Caps};
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::units::{grouped, number};
 use anastomesh_mesh::{Cap, Patch};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::pipeline::flow_plan::{FlowPlan, FlowSolution, Inflow, InletSite};
+use crate::plan::{FlowPlan, FlowSolution, Inflow, InletSite};
 use anastomesh_skeleton::fixtures::{network, tangle};
 use std::f64::consts::PI;
 

@@ -1,21 +1,36 @@
 //! Tubes of a network with spatial search.
 
+use crate::{EdgeId, Skeleton};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, point_segment};
-use anastomesh_skeleton::{EdgeId, Skeleton};
 
 /// Tubes of a network with spatial search.
+///
+/// ```
+/// use anastomesh_mesh::Point3;
+/// use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton, Tubes};
+///
+/// let node = |z: f64, original| Node { position: Point3::new(0.0, 0.0, z), radius: 1.0, original };
+/// let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [1.0; 2] }];
+/// let vessel = Skeleton { nodes: vec![node(0.0, 0), node(8.0, 1)], edges };
+/// let nearest = Tubes::of(&vessel).nearest_wall(&Point3::new(3.0, 0.0, 2.0)).expect("an edge");
+/// assert_eq!((nearest.t, nearest.distance, nearest.radius), (0.25, 3.0, 1.0));
+/// ```
 pub struct Tubes {
+    /// Tube of each edge.
     pub list: Vec<Tube>,
+    /// Their boxes.
     pub tree: Bvh,
     /// Upper bound for the distance between two points of the network.
     extent: f64,
-    /// The median radius.
+    /// Median radius.
     pub typical: f64,
 }
 
-/// Nearest tube to a place.
-#[derive(Clone, Copy)]
-pub struct Nearest {
+/// Tube nearest to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NearestTube {
+    /// Edge of the tube.
     pub edge: EdgeId,
     /// Parameter along the edge, in [0, 1].
     pub t: f64,
@@ -38,20 +53,20 @@ impl Tubes {
     }
 
     /// Returns the tube with the nearest wall; distances inside are negative.
-    pub fn nearest_wall(&self, place: &Point3) -> Option<Nearest> {
+    pub fn nearest_wall(&self, place: &Point3) -> Option<NearestTube> {
         self.nearest(place, 0.1 * self.typical, |distance, radius| distance - radius)
     }
 
     /// Returns the tube with the least `measure` (of axis distance and radius) near a place. `reach` is the initial
     /// search radius.
-    pub fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<Nearest> {
+    pub fn nearest(&self, place: &Point3, reach: f64, measure: impl Fn(f64, f64) -> f64) -> Option<NearestTube> {
         let mut reach = reach.max(1e-3 * self.typical);
         loop {
-            let mut best: Option<(f64, Nearest)> = None;
+            let mut best: Option<(f64, NearestTube)> = None;
             self.tree.query(&Aabb::of_points([place]).grown(reach), |id| {
                 let tube = &self.list[id as usize];
                 let (t, distance) = point_segment(place, &tube.a, &tube.b);
-                let found = Nearest { edge: EdgeId(id), t, distance, radius: tube.radius(t) };
+                let found = NearestTube { edge: EdgeId(id), t, distance, radius: tube.radius(t) };
                 let value = measure(distance, found.radius);
                 if best.is_none_or(|(b, n)| value < b || value <= b && found.edge < n.edge) {
                     best = Some((value, found));

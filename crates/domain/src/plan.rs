@@ -6,7 +6,7 @@ use anastomesh_tet::{Layers, LayersError};
 /// Thickness of a shell.
 ///
 /// ```
-/// use anastomesh::meshing::Thickness;
+/// use anastomesh_domain::Thickness;
 ///
 /// let arteriole = Thickness::Law { length: 2.0, radii: 0.1 };
 /// assert_ne!(arteriole, Thickness::PerNode(vec![2.0; 31]));

@@ -1,6 +1,6 @@
 //! Outlet models of a network from a total resistance, a mean pressure, or structured trees.
 
-use super::flow_error::FlowError;
+use super::error::FlowError;
 use anastomesh_io::flow::{OutletModel, StructuredTree};
 use anastomesh_network::flow::{NetworkFlow, solve_with_resistances};
 use anastomesh_skeleton::{NodeId, Skeleton};

@@ -4,11 +4,10 @@
 //! faces between cells before and after it. It conserves the flow as the solver does.
 
 use super::vessels::poiseuille_shear;
-use crate::fidelity::Tubes;
 use anastomesh_io::results::{FlowResult, Near};
 use anastomesh_mesh::units::counted;
 use anastomesh_network::flow::{NotConverged, solve_between};
-use anastomesh_skeleton::{EdgeId, NodeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Skeleton, Tubes};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

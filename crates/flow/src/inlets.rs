@@ -1,6 +1,6 @@
 //! Inlets of a network: the terminals that are named, and in each component without one the terminal of largest radius.
 
-use super::flow_plan::InletSite;
+use super::plan::InletSite;
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::units::counted;
 use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
@@ -132,7 +132,7 @@ impl Inlets {
     }
 
     /// Inlets of a network with the nodes of the file, with the names of their patches.
-    pub(crate) fn sites(&self, network: &Skeleton) -> Vec<InletSite> {
+    pub fn sites(&self, network: &Skeleton) -> Vec<InletSite> {
         let nodes: BTreeMap<u32, NodeId> = network.node_ids().map(|id| (network.node(id).original, id)).collect();
         let site = |(k, inlet): (usize, &Inlet)| {
             let patch = if k == 0 { "inlet".to_owned() } else { format!("inlet_{k}") };

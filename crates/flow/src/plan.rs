@@ -1,6 +1,6 @@
 //! Flow through a network: fluid, rates at inlets, models at outlets, and time.
 
-use super::flow_error::{FlowError, MAX_REYNOLDS};
+use super::error::{FlowError, MAX_REYNOLDS};
 use super::outlets::{OutletCase, OutletPlan};
 use anastomesh_io::flow::{
     BLOOD_DENSITY, BLOOD_VISCOSITY, FlowTable, OutletModel, Profile, Transient, USUAL_REYNOLDS, Waveform,
@@ -29,7 +29,7 @@ pub enum Inflow {
 /// Flow through a network. Units are consistent with the network: SI for lengths in metres.
 ///
 /// ```
-/// use anastomesh::meshing::{FlowPlan, Inflow, OutletKind, OutletPlan, Reference};
+/// use anastomesh_flow::{FlowPlan, Inflow, OutletKind, OutletPlan, Reference};
 ///
 /// let outlets = OutletPlan::default()
 ///     .kind(OutletKind::Rcr { time_constant: 1.5, proximal_fraction: OutletKind::PROXIMAL_FRACTION })
@@ -88,21 +88,33 @@ anastomesh_mesh::setters!(FlowPlan {
 
 /// Inlet of a network.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct InletSite {
+#[non_exhaustive]
+pub struct InletSite {
+    /// Terminal.
     pub node: NodeId,
     /// Name of its patch.
     pub patch: String,
     /// Name of its node in the file.
     pub name: String,
+    /// Radius of the vessel there.
     pub radius: f64,
 }
+
+impl InletSite {
+    /// Inlet of the patch `inlet`, whose node is named by its index.
+    pub fn new(node: NodeId, radius: f64) -> Self {
+        Self { node, patch: "inlet".into(), name: node.0.to_string(), radius }
+    }
+}
+
+anastomesh_mesh::setters!(InletSite { patch: String, name: String });
 
 /// Maximum number of inlets in an error.
 const LISTED: usize = 10;
 
 /// Flow rates, pressures and outlet models of a network.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FlowSolution {
+pub struct FlowSolution {
     /// Mean pressures and flow rates; the pressure beyond outlets is included.
     pub flow: NetworkFlow,
     /// Models by outlet.
@@ -155,12 +167,10 @@ impl FlowPlan {
     }
 
     /// Checks the plan against the inlets of a network, and its pressures if a mean pressure is wanted.
-    pub(crate) fn check_with(
-        &self,
-        network: &Skeleton,
-        inlets: &[InletSite],
-        names: &NodeNames,
-    ) -> Result<(), FlowError> {
+    ///
+    /// # Errors
+    /// The plan does not fit the network.
+    pub fn check_with(&self, network: &Skeleton, inlets: &[InletSite], names: &NodeNames) -> Result<(), FlowError> {
         self.rates(inlets)?;
         if self.outlets.depends_on_network() {
             self.solve(network, inlets, &|node| names.of(NodeId(node)))?;
@@ -169,7 +179,10 @@ impl FlowPlan {
     }
 
     /// Solves for flow rates and pressures, and finds the model of each outlet. `name` is the name of a node in the file.
-    pub(crate) fn solve(
+    ///
+    /// # Errors
+    /// The plan is invalid, or does not fit the network.
+    pub fn solve(
         &self,
         network: &Skeleton,
         inlets: &[InletSite],

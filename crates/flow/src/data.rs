@@ -4,13 +4,12 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use crate::block::{tet_ratio, triangle_ratio};
-use crate::fidelity::Tubes;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::quality::{radius_ratio, triangle_ratio};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::flow::{NotConverged, Orders, solve};
-use anastomesh_skeleton::{Adjacency, NodeId, Skeleton};
+use anastomesh_skeleton::{Adjacency, NodeId, Skeleton, Tubes};
 use rayon::prelude::*;
 
 /// Something that can be known of a place in a mesh.
@@ -127,7 +126,7 @@ impl Beside for VesselData {
     }
 
     fn in_tets(&self, column: usize, tets: &[[Point3; 4]]) -> Vec<f64> {
-        self.in_cells(column, tets, tet_ratio)
+        self.in_cells(column, tets, |[a, b, c, d]| radius_ratio(a, b, c, d))
     }
 
     fn in_faces(&self, column: usize, faces: &[[Point3; 3]]) -> Vec<f64> {
@@ -189,56 +188,4 @@ fn generations(network: &Skeleton, adjacency: &Adjacency, inlets: &BTreeSet<Node
         }
     }
     found.into_iter().map(Option::unwrap_or_default).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pipeline::{MeshPlan, mesh_network};
-    use anastomesh_skeleton::fixtures::network;
-
-    /// A vessel along z that forks at 10 into two of two edges each.
-    fn fork() -> Skeleton {
-        let points = [
-            [0.0, 0.0, 0.0],
-            [0.0, 0.0, 10.0],
-            [6.0, 0.0, 16.0],
-            [12.0, 0.0, 22.0],
-            [-6.0, 0.0, 16.0],
-            [-12.0, 0.0, 22.0],
-        ];
-        let mut network = network(&points, 1.0, &[(0, 1), (1, 2), (2, 3), (4, 1), (5, 4)]);
-        network.edges[0].radii = [1.4, 1.0];
-        network.nodes[0].radius = 1.4;
-        network
-    }
-
-    #[test]
-    fn places_know_their_vessel() {
-        let network = fork();
-        let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
-        let data = VesselData::new(Datum::ALL.to_vec(), &network, &made).unwrap();
-        let at = |place: [f64; 3]| Datum::ALL.map(|datum| data.at(datum, &Point3::from(place)));
-        let [radius, distance, branch, generation, strahler, node, _] = at([0.3, 0.0, 5.0]);
-        assert!((radius - 1.2).abs() < 1e-9 && (distance - 5.0).abs() < 1e-9);
-        assert_eq!([generation, strahler, node], [0.0, 2.0, 0.0]);
-        for side in [1.0, -1.0] {
-            // Both are counted from the fork, whichever way their edges run.
-            let [radius, distance, other, generation, strahler, node, _] = at([side * 9.0, 0.0, 19.0]);
-            assert!((radius - 1.0).abs() < 1e-9 && (distance - 9.0 * 2_f64.sqrt()).abs() < 1e-9, "{distance}");
-            assert_eq!([generation, strahler], [1.0, 1.0]);
-            assert!(other != branch && [2.0, 3.0, 4.0, 5.0].contains(&node));
-        }
-    }
-
-    #[test]
-    fn cells_have_their_shape() {
-        let network = fork();
-        let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
-        let data = VesselData::new(vec![Datum::Ratio], &network, &made).unwrap();
-        let p = |x, y, z| Point3::new(x, y, z);
-        let corner = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 1.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 1.0)];
-        assert!((data.in_tets(0, &[corner])[0] - 1.0).abs() < 1e-12);
-        assert!((data.in_faces(0, &[[corner[0], corner[1], corner[2]]])[0] - 1.0).abs() < 1e-12);
-    }
 }

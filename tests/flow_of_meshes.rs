@@ -1,8 +1,14 @@
-use super::*;
-use crate::pipeline::{Inflow, MeshPlan, Meshed, OutletKind, OutletPlan, Reference, mesh_network};
-use anastomesh_io::flow::USUAL_REYNOLDS;
-use anastomesh_mesh::source::gather;
-use anastomesh_skeleton::fixtures::network;
+//! Inlets, outlets and data of vessels in the mesh of a network.
+
+use anastomesh::Point3;
+use anastomesh::flow::{Caps, Datum, FlowPlan, Inflow, OutletKind, OutletPlan, Outlets, Reference, VesselData};
+use anastomesh::io::flow::USUAL_REYNOLDS;
+use anastomesh::io::network::NodeNames;
+use anastomesh::mesh::beside::Beside;
+use anastomesh::mesh::source::gather;
+use anastomesh::meshing::{MeshPlan, Meshed, mesh_network};
+use anastomesh::skeleton::Skeleton;
+use anastomesh::skeleton::fixtures::network;
 
 /// Plan with a total resistance of 3.
 fn plan() -> FlowPlan {
@@ -25,7 +31,7 @@ fn meshed() -> (Skeleton, Meshed) {
     for edge in &mut skeleton.edges[6..11] {
         edge.radii = [0.8; 2];
     }
-    let plan = MeshPlan { roots: vec![0, 12], ..MeshPlan::default() };
+    let plan = MeshPlan::default().roots(vec![0, 12]);
     let made = mesh_network(&skeleton, &plan, &()).unwrap();
     (skeleton, made)
 }
@@ -81,4 +87,49 @@ fn outlets_become_one_patch_or_one_of_each_order() {
     let names: Vec<_> = by_order.patches[3..].iter().map(|patch| (patch.id, patch.name.clone())).collect();
     assert_eq!(names, [(4, format!("outlets_order_{thin}")), (5, format!("outlets_order_{wide}"))]);
     assert_eq!(by_order.boundary_patch.iter().filter(|&&patch| patch == 4).count(), (5..=9).map(count).sum::<usize>());
+}
+
+/// A vessel along z that forks at 10 into two of two edges each.
+fn fork() -> Skeleton {
+    let points =
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [6.0, 0.0, 16.0], [12.0, 0.0, 22.0], [-6.0, 0.0, 16.0], [-12.0, 0.0, 22.0]];
+    let mut network = network(&points, 1.0, &[(0, 1), (1, 2), (2, 3), (4, 1), (5, 4)]);
+    network.edges[0].radii = [1.4, 1.0];
+    network.nodes[0].radius = 1.4;
+    network
+}
+
+#[test]
+fn places_know_their_vessel() {
+    let network = fork();
+    let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
+    let data = VesselData::new(Datum::ALL.to_vec(), &network, &made).unwrap();
+    let at = |place: [f64; 3]| {
+        let column = |i: usize| {
+            let values = data.at_points(i, &[Point3::from(place)]);
+            if data.columns()[i].at_points { values[0] } else { data.in_tets(i, &[[Point3::from(place); 4]])[0] }
+        };
+        [0, 1, 2, 3, 4, 5].map(column)
+    };
+    let [radius, distance, branch, generation, strahler, node] = at([0.3, 0.0, 5.0]);
+    assert!((radius - 1.2).abs() < 1e-9 && (distance - 5.0).abs() < 1e-9);
+    assert_eq!([generation, strahler, node], [0.0, 2.0, 0.0]);
+    for side in [1.0, -1.0] {
+        // Both are counted from the fork, whichever way their edges run.
+        let [radius, distance, other, generation, strahler, node] = at([side * 9.0, 0.0, 19.0]);
+        assert!((radius - 1.0).abs() < 1e-9 && (distance - 9.0 * 2_f64.sqrt()).abs() < 1e-9, "{distance}");
+        assert_eq!([generation, strahler], [1.0, 1.0]);
+        assert!(other != branch && [2.0, 3.0, 4.0, 5.0].contains(&node));
+    }
+}
+
+#[test]
+fn cells_have_their_shape() {
+    let network = fork();
+    let made = mesh_network(&network, &MeshPlan::default(), &()).expect("meshed").mesh;
+    let data = VesselData::new(vec![Datum::Ratio], &network, &made).unwrap();
+    let p = Point3::new;
+    let corner = [p(0.0, 0.0, 0.0), p(1.0, 0.0, 1.0), p(1.0, 1.0, 0.0), p(0.0, 1.0, 1.0)];
+    assert!((data.in_tets(0, &[corner])[0] - 1.0).abs() < 1e-12);
+    assert!((data.in_faces(0, &[[corner[0], corner[1], corner[2]]])[0] - 1.0).abs() < 1e-12);
 }

@@ -21,27 +21,29 @@ pub struct NotATerminal {
     pub node: u32,
 }
 
-/// Assigns patches: inlets get 2, 3, … (`inlet`, `inlet_1`, …), the outlets follow (`outlet_0`, …).
-///
-/// Inlets are the terminals whose `original` index is in `roots`, completed by [`inlets::complete`]. Order is that of the
-/// nodes.
-///
-/// # Errors
-/// A root is not a terminal of the skeleton.
-pub fn assign(skeleton: &Skeleton, roots: &[u32]) -> Result<TerminalPatches, NotATerminal> {
-    let adjacency = skeleton.adjacency();
-    let terminals = adjacency.terminals();
-    let original = |n: NodeId| skeleton.node(n).original;
-    if let Some(&node) = roots.iter().find(|&&root| !terminals.iter().any(|&t| original(t) == root)) {
-        return Err(NotATerminal { node });
+impl TerminalPatches {
+    /// Assigns patches: inlets get 2, 3, … (`inlet`, `inlet_1`, …), the outlets follow (`outlet_0`, …).
+    ///
+    /// Inlets are the terminals whose `original` index is in `roots`, completed by the widest terminal of each other component. Order is that of the
+    /// nodes.
+    ///
+    /// # Errors
+    /// A root is not a terminal of the skeleton.
+    pub fn assign(skeleton: &Skeleton, roots: &[u32]) -> Result<Self, NotATerminal> {
+        let adjacency = skeleton.adjacency();
+        let terminals = adjacency.terminals();
+        let original = |n: NodeId| skeleton.node(n).original;
+        if let Some(&node) = roots.iter().find(|&&root| !terminals.iter().any(|&t| original(t) == root)) {
+            return Err(NotATerminal { node });
+        }
+        let mut reasons = vec![None; skeleton.nodes.len()];
+        for &terminal in terminals.iter().filter(|&&t| roots.contains(&original(t))) {
+            reasons[terminal.index()] = Some(InletReason::Asked);
+        }
+        inlets::complete(skeleton, &adjacency, &mut reasons);
+        let inlets: Vec<NodeId> = skeleton.node_ids().filter(|n| reasons[n.index()].is_some()).collect();
+        Ok(Self { of: names(&terminals, &inlets) })
     }
-    let mut reasons = vec![None; skeleton.nodes.len()];
-    for &terminal in terminals.iter().filter(|&&t| roots.contains(&original(t))) {
-        reasons[terminal.index()] = Some(InletReason::Asked);
-    }
-    inlets::complete(skeleton, &adjacency, &mut reasons);
-    let inlets: Vec<NodeId> = skeleton.node_ids().filter(|n| reasons[n.index()].is_some()).collect();
-    Ok(TerminalPatches { of: names(&terminals, &inlets) })
 }
 
 fn names(terminals: &[NodeId], inlets: &[NodeId]) -> BTreeMap<NodeId, (i32, String)> {
@@ -82,7 +84,7 @@ mod tests {
 
     #[test]
     fn the_widest_terminal_is_the_inlet() {
-        let patches = assign(&y(), &[]).expect("no root asked for");
+        let patches = TerminalPatches::assign(&y(), &[]).expect("no root asked for");
         assert_eq!(
             [name(&patches, 3), name(&patches, 0), name(&patches, 2)],
             [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]
@@ -91,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_root_asked_for_is_the_inlet() {
-        let patches = assign(&y(), &[12]).expect("a terminal");
+        let patches = TerminalPatches::assign(&y(), &[12]).expect("a terminal");
         assert_eq!(
             [name(&patches, 2), name(&patches, 0), name(&patches, 3)],
             [(2, "inlet"), (3, "outlet_0"), (4, "outlet_1")]
@@ -100,6 +102,6 @@ mod tests {
 
     #[test]
     fn a_root_inside_is_refused() {
-        assert_eq!(assign(&y(), &[11]), Err(NotATerminal { node: 11 }));
+        assert_eq!(TerminalPatches::assign(&y(), &[11]), Err(NotATerminal { node: 11 }));
     }
 }

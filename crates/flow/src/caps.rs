@@ -5,8 +5,8 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use super::flow_error::FlowError;
-use super::flow_plan::{FlowPlan, FlowSolution, InletSite};
+use super::error::FlowError;
+use super::plan::{FlowPlan, FlowSolution, InletSite};
 use anastomesh_io::flow::{CapFlow, Flow, OutletModel, Waveform};
 use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::quality::triangle_area_vector;
@@ -66,7 +66,6 @@ pub struct Caps {
 
 /// Reason why the flow of a mesh cannot be computed.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum CapsError {
     /// The flow plan does not fit the network.
     #[error(transparent)]
@@ -197,6 +196,3 @@ fn areas(mesh: &dyn MeshSource) -> io::Result<BTreeMap<i32, f64>> {
     }
     Ok(areas)
 }
-
-#[cfg(test)]
-mod tests;

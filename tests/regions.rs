@@ -1,9 +1,12 @@
-use super::*;
-use crate::pipeline::{MeshPlan, mesh_network};
-use anastomesh_mesh::check::{Expectation, check_tets};
-use anastomesh_mesh::{NamedRegion, TetMesh, VolumeMesh};
-use anastomesh_skeleton::Skeleton;
-use anastomesh_skeleton::fixtures::network;
+//! Regions around the lumen of a network, by the library.
+
+use anastomesh::check::{Expectation, check_tets};
+use anastomesh::domain::{Domain, DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh::mesh::adjacency::{boundary_faces, vertices_of};
+use anastomesh::mesh::{NamedRegion, TetMesh, VolumeMesh};
+use anastomesh::meshing::{MeshPlan, mesh_network};
+use anastomesh::skeleton::Skeleton;
+use anastomesh::skeleton::fixtures::network;
 
 /// A fork of three vessels, and its lumen.
 fn fork() -> (Skeleton, VolumeMesh) {
@@ -26,7 +29,7 @@ fn expected() -> Expectation {
 fn region(volume: &VolumeMesh, id: i32) -> TetMesh {
     let tets = volume.mesh.tets.iter().zip(&volume.tet_block).filter(|(_, block)| **block == id).map(|(t, _)| *t);
     let mut mesh = TetMesh { points: volume.mesh.points.clone(), tets: tets.collect() };
-    let used = anastomesh_mesh::adjacency::vertices_of(&mesh.tets, mesh.points.len());
+    let used = vertices_of(&mesh.tets, mesh.points.len());
     let mut number = vec![0; used.len()];
     let mut points = Vec::new();
     for v in (0..used.len()).filter(|&v| used[v]) {
@@ -76,7 +79,7 @@ fn regions_can_be_left_out() {
     assert_eq!(domain.regions, [NamedRegion::new(2, "wall")]);
     let volume = &domain.mesh;
     assert!(check_tets(&volume.mesh, None).failed().next().is_none());
-    let mut outer: Vec<[u32; 3]> = anastomesh_mesh::adjacency::boundary_faces(&volume.mesh);
+    let mut outer: Vec<[u32; 3]> = boundary_faces(&volume.mesh);
     let mut listed = volume.boundary.clone();
     for faces in [&mut outer, &mut listed] {
         for face in faces.iter_mut() {

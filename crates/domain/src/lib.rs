@@ -1,0 +1,38 @@
+//! Regions around a lumen: shells (vessel wall, perivascular space) and tissue, as one conforming mesh.
+//!
+//! The lumen's wall is the inner side of the first shell, with the same vertices and triangles. The outermost shell is the
+//! inner boundary of the tissue.
+//!
+//! ```
+//! use anastomesh_domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+//!
+//! let wall = ShellPlan::new("wall", Thickness::Law { length: 0.0, radii: 0.2 });
+//! let tissue = TissuePlan::new(TissueShape::Box { margin: None });
+//! let plan = DomainPlan::default().shells(vec![wall]).tissue(tissue);
+//! assert_eq!(plan.names(), ["lumen", "wall", "tissue"]);
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`] |
+//! | carry out the plan | [`Domain::around`] |
+//!
+//! The crate has no features.
+
+mod assemble;
+mod build;
+mod error;
+mod organ;
+mod plan;
+mod surface;
+mod unfold;
+mod without;
+
+pub use build::{Domain, ShellsReport};
+pub use error::DomainError;
+pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
