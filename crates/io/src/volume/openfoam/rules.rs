@@ -25,8 +25,8 @@ const TURBULENT: f64 = 2300.0;
 /// Settings of schemes and solution.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Settings {
-    /// Gradient scheme.
-    pub(super) gradient: &'static str,
+    /// Gradient scheme of the pressure, and of the velocity.
+    pub(super) gradients: [&'static str; 2],
     /// Share of the correction of non-orthogonality.
     pub(super) correction: &'static str,
     /// Correctors of the pressure equation.
@@ -42,17 +42,19 @@ pub(super) struct Settings {
 impl Settings {
     /// Settings for a mesh with these figures and the highest Reynolds number of its inlets. With `coupled` outlets the
     /// pressure equation has one corrector: their pressure follows each flow rate. `layered` meshes have prisms at the wall.
-    /// In `transient` flow, pressure and velocity oscillate unless gradients match the divergence of the pressure equation.
+    /// In `transient` flow, pressure and velocity oscillate unless the gradient of the pressure matches the divergence of its
+    /// equation.
     pub(super) fn of(figures: &Figures, layered: bool, reynolds: f64, coupled: bool, transient: bool) -> Self {
         let angle = figures.max_angle;
         let correction = if angle <= CORRECTED { "corrected" } else { "limited corrected 0.5" };
         let is_skewed = figures.skewness > SKEWED || angle > CORRECTED;
-        let gradient = match is_skewed {
-            true => "cellLimited Gauss linear 1",
-            false if transient => "Gauss linear",
-            false if layered || figures.mean_angle() <= COMPACT => "pointCellsLeastSquares",
-            false if reynolds > FAST => "Gauss linear",
-            false => "Gauss pointLinear",
+        let is_compact = layered || figures.mean_angle() <= COMPACT;
+        let gradients = match is_skewed {
+            true => ["cellLimited Gauss linear 1"; 2],
+            false if transient && is_compact => ["Gauss linear", "pointCellsLeastSquares"],
+            false if is_compact => ["pointCellsLeastSquares"; 2],
+            false if transient || reynolds > FAST => ["Gauss linear"; 2],
+            false => ["Gauss pointLinear"; 2],
         };
         // A relaxed momentum equation needs a relaxed pressure: with 0.7 and 1 residuals remain at 0.1.
         let relaxation = if is_skewed || reynolds > FAST { [0.8, 0.8] } else { [0.9, 1.0] };
@@ -78,19 +80,24 @@ impl Settings {
                 "Reynolds number {reynolds:.0} at an inlet is beyond laminar flow; check the flow rate and its unit"
             ));
         }
-        Self { gradient, correction, correctors: u32::from(!coupled), relaxation, reason, doubts }
+        Self { gradients, correction, correctors: u32::from(!coupled), relaxation, reason, doubts }
     }
 
-    /// Comment on the gradient scheme.
-    pub(super) fn why_gradient(&self) -> &'static str {
-        match self.gradient {
-            "pointCellsLeastSquares" => {
+    /// Comment on the gradient schemes.
+    pub(super) fn why_gradients(&self) -> &'static str {
+        match self.gradients {
+            ["Gauss linear", "pointCellsLeastSquares"] => {
+                "// The gradient of the pressure matches its equation, or pressure and velocity oscillate in time. That of the \
+                 velocity is\n// by least squares over all cells at a cell's points: wall cells of tetrahedra have too few face \
+                 neighbours."
+            }
+            ["pointCellsLeastSquares", _] => {
                 "// Least squares over all cells at a cell's points: wall cells of tetrahedra have too few face neighbours."
             }
-            "Gauss pointLinear" => {
+            ["Gauss pointLinear", _] => {
                 "// Least squares are less exact on long tetrahedra. Values at points correct the skewness of their faces."
             }
-            "Gauss linear" => {
+            ["Gauss linear", _] => {
                 "// For flow in time, and for fast flow through long tetrahedra: other gradients oscillate or diverge."
             }
             _ => "// Limited because of the skewness or non-orthogonality.",
@@ -115,17 +122,18 @@ mod tests {
     fn settings_follow_the_figures() {
         let figures = |max_angle, skewness| Figures { max_angle, skewness, growth: 3.0, ..Figures::default() };
         let good = Settings::of(&figures(60.0, 1.0), false, 1.0, false, false);
-        assert_eq!((good.gradient, good.correction, good.correctors), ("pointCellsLeastSquares", "corrected", 1));
-        assert_eq!(Settings::of(&figures(60.0, 1.0), true, 1.0, false, true).gradient, "Gauss linear");
+        assert_eq!((good.gradients[0], good.correction, good.correctors), ("pointCellsLeastSquares", "corrected", 1));
+        let pulsatile = Settings::of(&figures(60.0, 1.0), true, 1.0, false, true);
+        assert_eq!(pulsatile.gradients, ["Gauss linear", "pointCellsLeastSquares"]);
         let long = Figures { angles: 40.0, faces: 1, ..figures(79.0, 1.0) };
-        assert_eq!(Settings::of(&long, false, 1.0, false, false).gradient, "Gauss pointLinear");
-        assert_eq!(Settings::of(&long, false, 400.0, false, false).gradient, "Gauss linear");
-        assert_eq!(Settings::of(&long, true, 1.0, false, false).gradient, "pointCellsLeastSquares");
+        assert_eq!(Settings::of(&long, false, 1.0, false, false).gradients, ["Gauss pointLinear"; 2]);
+        assert_eq!(Settings::of(&long, false, 400.0, false, false).gradients, ["Gauss linear"; 2]);
+        assert_eq!(Settings::of(&long, true, 1.0, false, false).gradients, ["pointCellsLeastSquares"; 2]);
         assert_eq!((good.relaxation, good.doubts.len()), ([0.9, 1.0], 0));
         let fast = Settings::of(&figures(60.0, 1.0), false, 400.0, true, false);
         assert_eq!((fast.relaxation, fast.correctors), ([0.8, 0.8], 0));
         let skewed = Settings::of(&figures(60.0, 6.0), false, 1.0, false, false);
-        assert_eq!((skewed.gradient, skewed.relaxation), ("cellLimited Gauss linear 1", [0.8, 0.8]));
+        assert_eq!((skewed.gradients[0], skewed.relaxation), ("cellLimited Gauss linear 1", [0.8, 0.8]));
         let flat = Settings::of(&figures(89.0, 1.0), false, 3000.0, false, false);
         assert_eq!((flat.correction, flat.relaxation), ("limited corrected 0.5", [0.8, 0.8]));
         assert_eq!(flat.doubts.len(), 2);

@@ -28,7 +28,8 @@ pub(super) fn control(flow: &Flow) -> String {
 }
 
 pub(super) fn schemes(flow: &Flow, settings: &Settings) -> String {
-    let Settings { gradient, correction, reason, .. } = settings;
+    let Settings { gradients: [pressure, velocity], correction, reason, .. } = settings;
+    let own = if pressure == velocity { String::new() } else { format!(" grad(U) {velocity};") };
     let (time, convection) = if flow.transient.is_some() {
         ("backward", "Gauss linearUpwind grad(U)")
     } else {
@@ -36,11 +37,11 @@ pub(super) fn schemes(flow: &Flow, settings: &Settings) -> String {
     };
     head::text("dictionary", "system/fvSchemes")
         + &format!(
-            "{reason}ddtSchemes           {{ default {time}; }}\n{}\ngradSchemes          {{ default {gradient}; \
+            "{reason}ddtSchemes           {{ default {time}; }}\n{}\ngradSchemes          {{ default {pressure};{own} \
              }}\ndivSchemes\n{{\n    default          none;\n    div(phi,U)       {convection};\n    \
              div((nuEff*dev2(T(grad(U))))) Gauss linear;\n}}\n{}\nlaplacianSchemes     {{ default Gauss linear {correction}; \
              }}\ninterpolationSchemes {{ default linear; }}\nsnGradSchemes        {{ default {correction}; }}\n",
-            settings.why_gradient(),
+            settings.why_gradients(),
             settings.why_correction()
         )
 }
