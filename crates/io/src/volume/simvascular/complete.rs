@@ -107,11 +107,16 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource, numbers: &Nu
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
     arrays.extend(cell_arrays(mesh, Width::Int32));
     let (node, element, region) = (|v| numbers.node(v), |tet| numbers.element(tet), |_| numbers.region.cast_unsigned());
-    arrays.push(ints(ArrayLocation::PointData, NODE_ID, points, &node));
-    arrays.push(ints(ArrayLocation::CellData, ELEMENT_ID, tets, &element));
+    arrays.push(uncompressed(ints(ArrayLocation::PointData, NODE_ID, points, &node)));
+    arrays.push(uncompressed(ints(ArrayLocation::CellData, ELEMENT_ID, tets, &element)));
     arrays.push(ints(ArrayLocation::CellData, "ModelRegionID", tets, &region));
     let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{tets}\"");
     File { kind: "UnstructuredGrid", counts, arrays, raw: false }.write(out)
+}
+
+/// Array that is stored as it is. Compression of different numbers saves little space for its time.
+fn uncompressed(array: ArrayWriter) -> ArrayWriter {
+    ArrayWriter { shrinks: false, ..array }
 }
 
 /// Array of numbers.
@@ -145,11 +150,11 @@ pub(super) fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet, numb
     let region = |_: &OuterFace| numbers.region.cast_unsigned();
     let patch = |face: &OuterFace| face.patch.cast_unsigned();
     let arrays = vec![
-        nodes,
+        uncompressed(nodes),
         points_array(points, false, |mut each| sheet.each_points(&mut each)),
-        ArrayWriter { shrinks: false, ..corners },
-        ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets),
-        labels(sheet, ELEMENT_ID, &element),
+        uncompressed(corners),
+        uncompressed(ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets)),
+        uncompressed(labels(sheet, ELEMENT_ID, &element)),
         labels(sheet, "ModelRegionID", &region),
         labels(sheet, "ModelFaceID", &patch),
     ];
