@@ -81,16 +81,18 @@ impl Figures {
             let cells = face.tets.map(|tet| (cell_of(tet) - start) as usize);
             (cells[0] != cells[1]).then_some((cells, place(face.vertices, face.tets[0])?))
         });
-        let mut between: Vec<([usize; 2], [Point3; 3])> = between.collect();
-        if cells.is_some() {
-            between.sort_by_key(|face| face.0);
-        }
         let mut figures = Self::default();
-        for same in between.chunk_by(|a, b| a.0 == b.0) {
-            let sides = same[0].0.map(|cell| all.get(cell));
-            if let [Some(owner), Some(neighbour)] = sides {
+        let mut measure = |same: &[([usize; 2], [Point3; 3])]| {
+            if let [Some(owner), Some(neighbour)] = same[0].0.map(|cell| all.get(cell)) {
                 figures.measure([owner, neighbour], same);
             }
+        };
+        if cells.is_none() {
+            between.for_each(|face| measure(&[face]));
+        } else {
+            let mut between: Vec<_> = between.collect();
+            between.sort_by_key(|face| face.0);
+            between.chunk_by(|a, b| a.0 == b.0).for_each(measure);
         }
         Ok(figures)
     }
@@ -111,7 +113,7 @@ impl Figures {
         if !(area > 0.0 && size > 0.0) {
             return;
         }
-        let angle = (along / size).clamp(-1.0, 1.0).acos().to_degrees();
+        let angle = arc_cosine(along / size).to_degrees();
         self.max_angle = self.max_angle.max(angle);
         self.angles += angle;
         self.faces += 1;
@@ -128,6 +130,25 @@ impl Figures {
         let [small, large] = [owner.volume.min(neighbour.volume), owner.volume.max(neighbour.volume)];
         self.growth = self.growth.max(if small > 0.0 { large / small } else { f64::INFINITY });
     }
+}
+
+/// Coefficients of an arc cosine (Abramowitz and Stegun, 4.4.46), from the highest power.
+const ARC_COSINE: [f64; 8] = [
+    -0.001_262_491_1,
+    0.006_670_090_1,
+    -0.017_088_125_6,
+    0.030_891_881_0,
+    -0.050_174_304_6,
+    0.088_978_987_4,
+    -0.214_598_801_6,
+    1.570_796_305_0,
+];
+
+/// Arc cosine with an error below 3e-8, faster than the system's and equal on all processors.
+fn arc_cosine(x: f64) -> f64 {
+    let y = x.abs().min(1.0);
+    let angle = (1.0 - y).sqrt() * ARC_COSINE.iter().fold(0.0, |sum, a| sum * y + a);
+    if x < 0.0 { std::f64::consts::PI - angle } else { angle }
 }
 
 /// Centroid and volume of a cell.
@@ -171,17 +192,26 @@ mod tests {
     }
 
     #[test]
+    fn arc_cosines_are_those_of_the_system() {
+        for i in -1000..=1000 {
+            let x = f64::from(i) / 1000.0;
+            assert!((arc_cosine(x) - x.acos()).abs() < 3e-8, "{x}");
+        }
+        assert_eq!(arc_cosine(1.000_000_1), 0.0);
+    }
+
+    #[test]
     fn angle_skewness_and_growth_of_two_tetrahedra() {
         let base = [Point3::new(0., 0., 0.), Point3::new(3., 0., 0.), Point3::new(0., 3., 0.)];
         // Both apexes are above the centre of the common face.
         let even = [base.to_vec(), vec![Point3::new(1., 1., 2.), Point3::new(1., 1., -2.)]].concat();
         let figures = measured(even);
-        assert!(figures.max_angle < 1e-6 && figures.skewness < 1e-12 && (figures.growth - 1.0).abs() < 1e-12);
+        assert!(figures.max_angle < 1.2e-6 && figures.skewness < 1e-12 && (figures.growth - 1.0).abs() < 1e-12);
         // Centres are a quarter of the way to the apexes: at (1, 1, 1) and (2, 1, -0.5).
         let uneven = [base.to_vec(), vec![Point3::new(1., 1., 4.), Point3::new(5., 1., -2.)]].concat();
         let figures = measured(uneven);
         let angle = (1.0_f64 / 1.5).atan().to_degrees();
-        assert!((figures.max_angle - angle).abs() < 1e-9 && (figures.mean_angle() - angle).abs() < 1e-9);
+        assert!((figures.max_angle - angle).abs() < 1.2e-6 && (figures.mean_angle() - angle).abs() < 1.2e-6);
         assert!((figures.growth - 2.0).abs() < 1e-12);
         // The line meets the face at (5/3, 1, 0). The corner at x = 3 is 2 away from its centre.
         assert!((figures.skewness - (2.0 / 3.0) / 2.0).abs() < 1e-12, "{figures:?}");
