@@ -33,7 +33,7 @@ use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
 use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
-use anastomesh_domain::{Domain, DomainError, DomainPlan, ShellsReport};
+use anastomesh_domain::{Domain, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
@@ -200,8 +200,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = thread_pool(args.common.threads)?;
     let prepared = pool.install(|| args.prepared(plan, flow))?;
-    let checked = pool.install(|| domain.check(&prepared.networks.prepared));
-    checked.map_err(|e| args.no_regions(&e, &prepared.networks.names))?;
+    let Networks { prepared: network, names, .. } = &prepared.networks;
+    let checked = pool.install(|| domain.check(network, &|node| names.of(NodeId(node))));
+    checked.map_err(|e| args.no_regions(&e))?;
     let stop = Stop::listen(args.common.quiet)?;
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let PreparedRun { notes, networks, inlets, cut_short, .. } = &prepared;
@@ -405,23 +406,15 @@ impl Args {
             bars.note("the lumen is not valid: it is written without regions around it");
             return Ok(None);
         }
-        let names = &made.networks.names;
-        let failed = |e: &dyn std::fmt::Display| Failure::input(format!("{}: {e}", self.network.network.display()));
-        let lumen = gather(lumen).map_err(|e| if bars.is_cancelled() { self.stopped() } else { failed(&e) })?;
+        let lumen =
+            gather(lumen).map_err(|e| if bars.is_cancelled() { self.stopped() } else { self.no_regions(&e) })?;
         let made = Domain::around(lumen, &made.network, plan, expectation, bars);
-        made.map(Some).map_err(|e| if e.is_cancelled() { self.stopped() } else { self.no_regions(&e, names) })
+        made.map(Some).map_err(|e| if e.is_cancelled() { self.stopped() } else { self.no_regions(&e) })
     }
 
     /// Failure to make the regions.
-    fn no_regions(&self, error: &DomainError, names: &NodeNames) -> Failure {
-        let text = match error {
-            DomainError::NodesOutside { node, .. } => {
-                let named = format!("node {}", names.of(NodeId(*node)));
-                error.to_string().replace(&format!("node {node} "), &format!("{named} "))
-            }
-            _ => error.to_string(),
-        };
-        Failure::input(format!("{}: {text}", self.network.network.display()))
+    fn no_regions(&self, error: &dyn std::fmt::Display) -> Failure {
+        Failure::input(format!("{}: {error}", self.network.network.display()))
     }
 
     /// Failure of a run, after its reports.

@@ -80,14 +80,14 @@ impl Domain {
 }
 
 impl DomainPlan {
-    /// Checks names, ranges, and that the tissue's surface contains a network.
+    /// Checks names, ranges, and that the tissue's surface contains a network. `name` is the name of a node in the file.
     ///
     /// # Errors
     /// The first fault.
-    pub fn check(&self, network: &Skeleton) -> Result<(), DomainError> {
+    pub fn check(&self, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
         self.validate()?;
         match &self.tissue {
-            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network),
+            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network, name),
             _ => Ok(()),
         }
     }

@@ -29,8 +29,8 @@ pub enum DomainError {
     NodesOutside {
         /// Number of nodes.
         count: usize,
-        /// The first, as the file numbers its nodes from 0.
-        node: u32,
+        /// Name of the first in the file.
+        node: String,
         /// Its place.
         at: [f64; 3],
     },

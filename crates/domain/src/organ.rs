@@ -27,7 +27,7 @@ pub fn organ(plan: &TissuePlan, vessels: &TriMesh, outer: f64) -> Result<TriMesh
 }
 
 /// Checks before meshing that an organ's surface is closed and contains the nodes of a network.
-pub fn check_organ(organ: &TriMesh, network: &Skeleton) -> Result<(), DomainError> {
+pub fn check_organ(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
     Tetrahedralizer::new().check(organ).map_err(DomainError::Organ)?;
     let nodes = network.nodes.iter().map(|node| node.position).collect();
     let vessels = TriMesh { points: nodes, triangles: (0..network.nodes.len() as u32).map(|v| [v; 3]).collect() };
@@ -35,7 +35,7 @@ pub fn check_organ(organ: &TriMesh, network: &Skeleton) -> Result<(), DomainErro
     match outside.first() {
         Some(&[v, ..]) => {
             let at = vessels.points[v as usize].coords.into();
-            Err(DomainError::NodesOutside { count: outside.len(), node: network.nodes[v as usize].original, at })
+            Err(DomainError::NodesOutside { count: outside.len(), node: name(network.nodes[v as usize].original), at })
         }
         None => Ok(()),
     }
