@@ -151,15 +151,29 @@ impl Changes {
                 None => taken.push((tip.tip, by)),
             }
         }
-        if taken.is_empty() {
+        // Only tips of merged lines outside the lumen are a loss: most lines begin with others at the inlet.
+        let merged: Vec<(u32, f64)> = merged_tips(vessels, prepare).collect();
+        if taken.is_empty() && merged.is_empty() {
             return;
         }
         let tubes = Tubes::of(made);
+        for (tip, by) in merged {
+            let lost = vessels.length_outside(tip, by, &tubes);
+            if lost > 0.0 {
+                Change::add(&mut self.dropped, lost, tip);
+            }
+        }
         for (tip, by) in taken {
             let lost = vessels.length_outside(tip, by, &tubes);
             Change::add(&mut self.dropped, lost, tip);
         }
     }
+}
+
+/// Tips of lines that were merged with others, with the length of the merged part.
+fn merged_tips(vessels: &Tips, prepare: &PrepareReport) -> impl Iterator<Item = (u32, f64)> {
+    let ends = prepare.merge.merged.iter().flat_map(|m| m.nodes.map(|node| (node, m.length)));
+    ends.filter(|(node, _)| vessels.branches.contains_key(node))
 }
 
 /// Vessels of the given network that end in a terminal, by the index of the terminal in the file.

@@ -3,7 +3,7 @@
 use super::defect::Defect;
 use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
 use anastomesh_skeleton::{Branch, NodeId, Skeleton};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Default limit of the displacement of a measured axis, in radii.
 pub(super) const MEASURED: f64 = 1.0;
@@ -74,7 +74,7 @@ impl Limits {
 }
 
 /// Nodes that a listed change may move far. An overlap required it, the node was split as it has many vessels, or a repair
-/// removed its vessel or moved the vessel's end.
+/// removed its vessel, merged it with another line, or moved the vessel's end.
 fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
@@ -88,8 +88,21 @@ fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let short = prepare.short_tips.iter().map(|t| t.tip);
     let ends: FxHashSet<u32> = touching.chain(short).chain(prepare.spurs.iter().map(|s| s.tip)).collect();
     let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
-    for branch in given.branches(&adjacency).list.iter().filter(cured) {
+    let branches = given.branches(&adjacency).list;
+    for branch in branches.iter().filter(cured) {
         nodes.extend(branch.nodes.iter().map(|&n| name(n)));
+    }
+    // Merged ends of lines: of these only the merged part.
+    let merged: FxHashMap<u32, f64> =
+        prepare.merge.merged.iter().flat_map(|m| m.nodes.map(|node| (node, m.length))).collect();
+    for branch in &branches {
+        let (length, [first, last]) = (branch.length(), branch.ends());
+        let is_tip = |n: NodeId| adjacency.valence(n) == 1;
+        let merged_from = |n: NodeId| merged.get(&name(n)).filter(|_| is_tip(n)).map_or(-1.0, |by| by * (1.0 + 1e-9));
+        let [from_first, from_last] = [first, last].map(merged_from);
+        let places = branch.nodes.iter().zip(&branch.arc);
+        let is_merged = |arc: f64| arc <= from_first || length - arc <= from_last;
+        nodes.extend(places.filter(|(_, arc)| is_merged(**arc)).map(|(&n, _)| name(n)));
     }
     nodes
 }

@@ -58,6 +58,9 @@ pub struct TouchingTip {
 const CLEAR: f64 = 1.15;
 /// Maximum retraction of a tip, in sums of the radii.
 const FURTHEST: f64 = 4.0;
+/// Maximum retracted length outside other vessels, in radii. A longer loss is a defect of the mesh, and the overlap is left to
+/// the refinement. The last radius lies within the wall around the new end.
+const LOST: f64 = 2.75;
 /// Retraction of a tip that could not be capped, in its radii.
 const BACK: f64 = 2.0;
 /// Minimum extension of such a tip, in its radii: a block tries shorter ones. Maximum extension of any tip.
@@ -267,11 +270,16 @@ impl<'a> Work<'a> {
     fn retract(&mut self, way: &TipBranch, radii: f64) -> TouchedBy {
         let last = way.edges[way.edges.len() - 1];
         let keep = LEFT * self.given.tube(last).max_radius();
+        let (mut lost, mut before) = (0.0, 0.0);
         for stand in self.stands(way) {
+            if !self.is_near_a_wall(way, &stand, 0.0) {
+                lost += (stand.arc - before) / stand.radius;
+            }
+            before = stand.arc;
             if stand.arc > way.length - keep {
                 break;
             }
-            if stand.arc > FURTHEST * radii {
+            if stand.arc > FURTHEST * radii || lost > LOST {
                 return TouchedBy::Left;
             }
             if self.in_the_way(way, &stand).is_none() {

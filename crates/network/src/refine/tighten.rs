@@ -3,6 +3,7 @@
 //! The iterations push vessels apart with a margin, and overshoot. Here each group of vessels that moved together goes back
 //! towards its place, as far as its vessels keep a smaller clearance.
 
+use super::overlapping::overlapping;
 use anastomesh_mesh::geometry::{DisjointSets, Point3};
 use anastomesh_skeleton::{Adjacency, Overlaps, Skeleton};
 
@@ -55,9 +56,7 @@ pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64
 
 /// Pairs of vessels closer than `clearance` times the sum of their radii.
 fn close(skeleton: &Skeleton, adjacency: &Adjacency, clearance: f64) -> Overlaps {
-    let mut wide = skeleton.clone();
-    wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| clearance * r));
-    wide.overlaps(adjacency)
+    overlapping(skeleton, adjacency, false, clearance)
 }
 
 /// Displaced nodes that are joined by vessels or by an overlap.
