@@ -1,10 +1,12 @@
 //! Contact handling: pairs of vessels to watch, and the corrections that push them apart.
 
 use super::frame::Frame;
+use super::overlapping::in_crotches;
 use super::push::{Push, project};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
 use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// Distances along the skeleton between the ends of two edges; infinite if long.
 type Ways = [[f64; 2]; 2];
@@ -40,8 +42,9 @@ fn reach_box(tube: &Tube, clearance: f64) -> Aabb {
 }
 
 impl Contacts {
-    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`.
-    pub fn find(frame: &Frame, clearance: f64, skin: f64) -> Self {
+    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`. In
+    /// `measured` networks without those in the crotch of a bifurcation, which do not overlap.
+    pub fn find(frame: &Frame, clearance: f64, skin: f64, measured: bool) -> Self {
         let s = &frame.skeleton;
         let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
         let tree = Bvh::new(&boxes);
@@ -66,6 +69,8 @@ impl Contacts {
                 },
             )
             .collect();
+        let crotches = if measured { in_crotches(s, &frame.adjacency, clearance) } else { Vec::new() };
+        let crotches: FxHashSet<[EdgeId; 2]> = crotches.into_iter().collect();
         let mut contacts = Self::default();
         for (pairs, ways) in found {
             let shift = contacts.ways.len() as u32;
@@ -78,11 +83,20 @@ impl Contacts {
             let edges = frame.adjacency.edges(node);
             if edges.len() > 2 || frame.is_fold[node.index()] {
                 for (i, &e) in edges.iter().enumerate() {
-                    contacts.forks.extend(edges[..i].iter().map(|&f| (node, [f, e])));
+                    let pairs = edges[..i].iter().map(|&f| (node, [f, e]));
+                    contacts.forks.extend(pairs.filter(|(_, pair)| !crotches.contains(&ascending(*pair))));
                 }
             }
         }
+        contacts.pairs.retain(|pair| !crotches.contains(&ascending(pair.edges)));
         contacts
+    }
+
+    /// Drops pairs whose nodes are all fixed.
+    pub fn drop_fixed(&mut self, frame: &Frame) {
+        let moves = |e: EdgeId| frame.skeleton.edge(e).nodes.iter().any(|n| frame.mobility[n.index()] > 0.0);
+        self.pairs.retain(|pair| pair.edges.into_iter().any(moves));
+        self.forks.retain(|(_, pair)| pair.iter().any(|&e| moves(e)));
     }
 
     /// Corrections of all pairs closer than `clearance` sums of their radii.
@@ -118,6 +132,11 @@ impl Contacts {
             push_tubes(frame, pair.edges, [a, b], place, clearance, out);
         }
     }
+}
+
+/// Edges in ascending order.
+fn ascending([e, f]: [EdgeId; 2]) -> [EdgeId; 2] {
+    [e.min(f), e.max(f)]
 }
 
 fn pairs_of(

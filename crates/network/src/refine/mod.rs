@@ -13,6 +13,7 @@ mod overlapping;
 mod params;
 mod push;
 mod residual;
+mod settle;
 mod shape;
 mod solve;
 mod split;

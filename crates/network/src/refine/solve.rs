@@ -10,7 +10,7 @@ use super::leash::Leashes;
 use super::overlapping::overlapping;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
-use super::{cut_length, shape, tighten};
+use super::{cut_length, settle, shape, tighten};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
@@ -99,6 +99,7 @@ pub(super) fn solve(
     let mut best = best.state;
     if let (Some(_), Some(state)) = (leashes, &mut best) {
         tighten::tighten(&mut state.skeleton, &state.origin, params.clearance);
+        settle::settle(&mut state.skeleton, &state.origin, params.clearance, solver.unit, progress)?;
     }
     Ok(Moved { best, history, unit: solver.unit })
 }
@@ -193,7 +194,7 @@ impl<'a> Solver<'a> {
         if self.moved.iter().any(|&m| m > 0.5 * skin) {
             // Frees the old contacts first, to save memory.
             self.contacts = Contacts::default();
-            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin);
+            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin, self.leashes.is_some());
             self.moved.fill(0.0);
         }
         let mut sum = vec![Vec3::zeros(); self.moved.len()];
