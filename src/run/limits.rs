@@ -31,10 +31,10 @@ anastomesh_mesh::setters!(Limits {
 });
 
 impl Limits {
-    /// Differences beyond the limits.
+    /// Differences beyond the limits. `networks`: the given network, and the prepared one before refinement.
     pub(crate) fn unfaithful(
         self,
-        given: &Skeleton,
+        networks: [&Skeleton; 2],
         repairs: Repairs,
         fidelity: &Fidelity,
         changes: &Changes,
@@ -44,7 +44,7 @@ impl Limits {
         if excess.abs() > bound {
             defects.push(Defect::Lumen { excess, bound });
         }
-        defects.extend(self.displaced(given, repairs, fidelity));
+        defects.extend(self.displaced(networks, repairs, fidelity));
         if let Some(vessels) = changes.dropped.filter(|change| change.worst > DROPPED) {
             defects.push(Defect::Dropped { vessels, bound: DROPPED });
         }
@@ -54,11 +54,22 @@ impl Limits {
         defects
     }
 
+    /// Place of the furthest displacement beyond the limit, if there is no defect: listed changes require such displacements.
+    pub(crate) fn excused(self, repairs: Repairs, fidelity: &Fidelity, defects: &[Defect]) -> Option<Displaced> {
+        let bound = self.bound(repairs)?;
+        let is_defect = defects.iter().any(|defect| matches!(defect, Defect::Displaced { .. }));
+        fidelity.axis.furthest.first().filter(|place| !is_defect && place.radii > bound).copied()
+    }
+
+    /// Limit of the displacement; `None` without one.
+    fn bound(self, repairs: Repairs) -> Option<f64> {
+        self.displacement.or(repairs.prepare.measured.then_some(MEASURED))
+    }
+
     /// Places where the axis is further from the given one than it may be.
-    fn displaced(self, given: &Skeleton, repairs: Repairs, fidelity: &Fidelity) -> Option<Defect> {
-        let usual = repairs.prepare.measured.then_some(MEASURED);
-        let bound = self.displacement.or(usual)?;
-        let excused = if self.displacement.is_none() { excused(given, repairs) } else { FxHashSet::default() };
+    fn displaced(self, networks: [&Skeleton; 2], repairs: Repairs, fidelity: &Fidelity) -> Option<Defect> {
+        let bound = self.bound(repairs)?;
+        let excused = if self.displacement.is_none() { excused(networks, repairs) } else { FxHashSet::default() };
         let is_excused = |d: &Displaced| d.meshed.iter().chain(&d.given).any(|node| excused.contains(node));
         let p99 = fidelity.axis.spread.p99;
         let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound);
@@ -73,9 +84,22 @@ impl Limits {
     }
 }
 
+/// Nodes of a vessel that resampling removed beside an excused node: the vessel moves there as well.
+fn between(vessel: &[u32], known: &FxHashSet<u32>, excused: &FxHashSet<u32>) -> Vec<u32> {
+    let mut all = Vec::new();
+    let mut start = 0;
+    for end in (1..vessel.len()).filter(|&i| known.contains(&vessel[i]) || i + 1 == vessel.len()) {
+        if excused.contains(&vessel[start]) || excused.contains(&vessel[end]) {
+            all.extend(&vessel[start + 1..end]);
+        }
+        start = end;
+    }
+    all
+}
+
 /// Nodes that a listed change may move far. An overlap required it, the node was split as it has many vessels, or a repair
 /// removed its vessel, merged it with another line, or moved the vessel's end.
-fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
+fn excused([given, prepared]: [&Skeleton; 2], repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
     let crowded = refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
@@ -91,6 +115,11 @@ fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let branches = given.branches(&adjacency).list;
     for branch in branches.iter().filter(cured) {
         nodes.extend(branch.nodes.iter().map(|&n| name(n)));
+    }
+    let known: FxHashSet<u32> = prepared.nodes.iter().map(|n| n.original).collect();
+    for branch in &branches {
+        let names: Vec<u32> = branch.nodes.iter().map(|&n| name(n)).collect();
+        nodes.extend(between(&names, &known, &nodes));
     }
     // Merged ends of lines: of these only the merged part.
     let merged: FxHashMap<u32, f64> =

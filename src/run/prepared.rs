@@ -149,6 +149,7 @@ impl PreparedRun {
             changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
+            excused: None,
         };
         found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }
@@ -193,6 +194,7 @@ impl PreparedRun {
             changes: Changes::default(),
             caps: None,
             defects: Vec::new(),
+            excused: None,
         };
         found.evaluated(&plan, &settings.flow, settings.limits, progress)
     }

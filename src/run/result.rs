@@ -5,7 +5,7 @@ use super::error::MeshingError;
 use super::limits::Limits;
 use super::networks::Networks;
 use super::strategy::Attempt;
-use crate::fidelity::{Changes, Fidelity, Repairs};
+use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
 use crate::pipeline::{Caps, Clock, FlowPlan, MeshPlan, RunReport};
 use anastomesh_io::volume::MeshNotes;
 use anastomesh_mesh::Cap;
@@ -43,6 +43,8 @@ pub struct NetworkMesh<M> {
     pub caps: Option<Caps>,
     /// Defects; empty if the mesh is valid and that of its network.
     pub defects: Vec<Defect>,
+    /// Place of the furthest displacement of the axis beyond the limit that listed changes require; `None` with a defect.
+    pub excused: Option<Displaced>,
 }
 
 impl<M> NetworkMesh<M> {
@@ -65,7 +67,7 @@ impl<M> NetworkMesh<M> {
     /// Replaces the mesh.
     pub(super) fn with_mesh<N>(self, mesh: N) -> NetworkMesh<N> {
         let Self { expectation, check, report, network, networks, attempts, kept, .. } = self;
-        let Self { fidelity, changes, caps, defects, .. } = self;
+        let Self { fidelity, changes, caps, defects, excused, .. } = self;
         NetworkMesh {
             mesh,
             expectation,
@@ -79,6 +81,7 @@ impl<M> NetworkMesh<M> {
             changes,
             caps,
             defects,
+            excused,
         }
     }
 }
@@ -105,6 +108,7 @@ impl<M: MeshSource> NetworkMesh<M> {
         let repairs = Repairs { prepare, refine: refine.as_ref() };
         self.changes = Changes::of(given, prepared, &self.network, repairs, &caps);
         self.defects = self.find_defects(plan, limits);
+        self.excused = self.fidelity.as_ref().and_then(|fidelity| limits.excused(repairs, fidelity, &self.defects));
         Ok(self)
     }
 
@@ -121,9 +125,9 @@ impl<M: MeshSource> NetworkMesh<M> {
         }
         // Vessels of missing blocks are no change of the network.
         if let Some(fidelity) = self.fidelity.as_ref().filter(|_| self.report.failed.is_empty()) {
-            let Networks { given, prepare, refine, .. } = &self.networks;
+            let Networks { given, prepared, prepare, refine, .. } = &self.networks;
             let repairs = Repairs { prepare, refine: refine.as_ref() };
-            defects.extend(limits.unfaithful(given, repairs, fidelity, &self.changes));
+            defects.extend(limits.unfaithful([given, prepared], repairs, fidelity, &self.changes));
         }
         defects
     }
