@@ -82,8 +82,7 @@ fn grade(surface: &HalfEdges, sizes: &mut [f64]) {
     let is_source = |&v: &u32| surface.has_vertex(v) && surface.fan(v).any(|h| lowers(sizes, v, h));
     let sources = (0..sizes.len() as u32).filter(is_source);
     // The smallest size first (Dijkstra's algorithm), so that each vertex is final when its turn comes.
-    let mut heap: BinaryHeap<Reverse<(Total, u32)>> =
-        sources.map(|v| Reverse((Total(sizes[v as usize]), v))).collect();
+    let mut heap: BinaryHeap<Reverse<(Total, u32)>> = sources.map(|v| Reverse((Total(sizes[v as usize]), v))).collect();
     while let Some(Reverse((Total(size), v))) = heap.pop() {
         if size > sizes[v as usize] {
             continue;

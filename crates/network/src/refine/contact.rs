@@ -6,7 +6,7 @@ use super::push::{Push, project};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
 use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Distances along the skeleton between the ends of two edges; infinite if long.
 type Ways = [[f64; 2]; 2];
@@ -33,6 +33,8 @@ pub(super) struct Contacts {
     ways: Vec<Ways>,
     /// Pairs of edges that share a node.
     forks: Vec<(NodeId, [EdgeId; 2])>,
+    /// Smaller clearances of some pairs, whose edges are in ascending order.
+    pub smaller: FxHashMap<[EdgeId; 2], f64>,
 }
 
 /// Bounding box of all points within `clearance` radii of a tube's axis.
@@ -102,17 +104,26 @@ impl Contacts {
     /// Corrections of all pairs closer than `clearance` sums of their radii.
     pub fn pushes(&self, frame: &Frame, clearance: f64) -> Vec<Push> {
         let apart = self.pairs.par_iter().with_min_len(512).fold(Vec::new, |mut out, pair| {
-            self.push_apart(frame, pair, clearance, &mut out);
+            self.push_apart(frame, pair, self.clearance(pair.edges, clearance), &mut out);
             out
         });
         let forks = self.forks.par_iter().with_min_len(512).fold(Vec::new, |mut out, fork| {
-            push_fork(frame, fork, clearance, &mut out);
+            push_fork(frame, fork, self.clearance(fork.1, clearance), &mut out);
             out
         });
         // Folds preserve the order of the pairs, for any division of the work.
         let mut all: Vec<Push> = apart.collect::<Vec<_>>().concat();
         all.extend(forks.collect::<Vec<_>>().concat());
         all
+    }
+
+    /// Clearance of a pair.
+    fn clearance(&self, edges: [EdgeId; 2], usual: f64) -> f64 {
+        if self.smaller.is_empty() {
+            usual
+        } else {
+            self.smaller.get(&ascending(edges)).map_or(usual, |c| c.min(usual))
+        }
     }
 
     fn push_apart(&self, frame: &Frame, pair: &Pair, clearance: f64, out: &mut Vec<Push>) {

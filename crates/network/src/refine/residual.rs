@@ -73,7 +73,12 @@ fn total_volume(skeleton: &Skeleton) -> f64 {
 }
 
 /// Treats remaining overlaps; in `measured` networks, crotches are none. New nodes are also added to `origin`.
-pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, measured: bool, params: &RefineParams) -> ResidualReport {
+pub(super) fn treat(
+    skeleton: &mut Skeleton,
+    origin: &mut Vec<Point3>,
+    measured: bool,
+    params: &RefineParams,
+) -> ResidualReport {
     let adjacency = skeleton.adjacency();
     let overlaps_of = |s: &Skeleton| overlapping(s, &s.adjacency(), !measured, 1.0).pairs;
     let found = overlaps_of(skeleton);
