@@ -235,6 +235,25 @@ mod tests {
     }
 
     #[test]
+    fn a_long_crotch_is_not_fused() {
+        // Two vessels that leave a trunk side by side, and separate after 20 radii.
+        let mut points = vec![[-9.0, 0.0, 0.0], [0.0; 3]];
+        let mut edges = vec![(0, 1)];
+        for side in [-0.5, 0.5] {
+            let mut last = 1;
+            for i in 1..=15 {
+                edges.push((last, points.len() as u32));
+                last = points.len() as u32;
+                points.push([2.0 * f64::from(i), side * (0.5 + 0.15 * f64::from(i)), 0.0]);
+            }
+        }
+        let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
+        let whole = |edges: &[(u32, u32)]| partition(&network(&points, 1.0, edges), &params).expect("a partition");
+        let fork = whole(&edges).clusters.remove(0);
+        assert_eq!(of(&fork), Astray::default());
+    }
+
+    #[test]
     fn an_axis_that_leaves_the_wall_is_found() {
         let straight = cluster(&[[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]);
         let bent = cluster(&[[0.0; 3], [10.0, 1.5, 0.0], [20.0, 0.0, 0.0]]);

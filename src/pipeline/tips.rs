@@ -122,6 +122,7 @@ mod tests {
             let length = |c: &Cluster| c.tubes.iter().map(anastomesh_mesh::geometry::Tube::length).sum::<f64>();
             assert!((length(&out) - length(&cluster) - end.section.radius).abs() < 1e-9);
             assert_eq!(moved(&cluster, &[(i, -1e3)]), None);
+            assert_eq!(moved(&cluster, &[(i, 1e3)]), None);
         }
         assert_eq!(moved(&cluster, &[(99, 1.0)]), None);
     }

@@ -135,3 +135,51 @@ fn excused([given, prepared]: [&Skeleton; 2], repairs: Repairs) -> FxHashSet<u32
     }
     nodes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Vec3;
+    use anastomesh_network::{FarNode, PrepareReport, RefineReport};
+    use anastomesh_skeleton::fixtures::network;
+
+    fn set(nodes: &[u32]) -> FxHashSet<u32> {
+        nodes.iter().copied().collect()
+    }
+
+    #[test]
+    fn points_that_resampling_removed_move_with_their_neighbours() {
+        let vessel = [0, 1, 2, 3, 4, 5, 6];
+        assert_eq!(between(&vessel, &set(&[0, 3, 6]), &set(&[6])), [4, 5]);
+        assert_eq!(between(&vessel, &set(&[0, 3, 6]), &set(&[3])), [1, 2, 4, 5]);
+        assert!(between(&vessel, &set(&[0, 3, 6]), &set(&[])).is_empty());
+    }
+
+    /// A vessel whose middle moved by two radii: a defect, unless an overlap required it.
+    #[test]
+    fn a_displacement_that_an_overlap_requires_is_named_and_no_defect() {
+        let given = network(
+            &[[0.0; 3], [300.0, 0.0, 0.0], [301.0, 0.0, 0.0], [600.0, 0.0, 0.0]],
+            1.0,
+            &[(0, 1), (1, 2), (2, 3)],
+        );
+        let mut meshed = given.clone();
+        meshed.nodes[1].position += Vec3::new(0.0, 2.0, 0.0);
+        let tubes = crate::fidelity::Tubes::of(&meshed);
+        let axis = crate::fidelity::Displacements::of(&given, &meshed, &tubes);
+        let mut fidelity = Fidelity { axis, ..Fidelity::default() };
+        fidelity.axis.spread.p99 = 0.5;
+        let prepare = PrepareReport { measured: true, ..PrepareReport::default() };
+        let of = |demanded: &[FarNode]| {
+            let mut report = RefineReport::default();
+            report.demanded = demanded.to_vec();
+            let repairs = Repairs { prepare: &prepare, refine: Some(&report) };
+            let limits = Limits::default();
+            let defects = limits.unfaithful([&given, &given], repairs, &fidelity, &Changes::default());
+            let excused = limits.excused(repairs, &fidelity, &defects);
+            (defects.len(), excused.is_some())
+        };
+        assert_eq!(of(&[]), (1, false));
+        assert_eq!(of(&[FarNode { node: 1, radii: 2.0 }]), (0, true));
+    }
+}

@@ -51,7 +51,7 @@ pub(super) fn treat(
             let [a, b] = branch.ends().map(|n| skeleton.node(n).position);
             branch.length() < STRAIGHT * (b - a).norm()
         })
-        .map(|branch| branch.ends())
+        .map(anastomesh_skeleton::Branch::ends)
         .map(|[a, b]| [a.min(b), a.max(b)])
         .collect();
     let crowded = |s: &Skeleton| {
@@ -237,6 +237,14 @@ mod tests {
         assert!((apart - 4.0).abs() < 1e-9, "{apart}");
         let merged = run(&s, &RefineParams { crowded: Crowded::Merge, ..RefineParams::default() });
         assert!(merged.report.crowded.iter().all(|p| !p.resolved));
+    }
+
+    #[test]
+    fn the_ends_of_a_vessel_that_is_wider_than_long_stay() {
+        let s = network(&[[0.0; 3], [0.6, 0.0, 0.0], [30.0, 0.0, 0.0], [60.0, 0.0, 0.0]], 1.0, &[(0, 1), (2, 3)]);
+        let refined = run(&s, &RefineParams::default());
+        assert!(refined.report.crowded.is_empty());
+        assert!((0..4).all(|i| refined.skeleton.nodes[i].position == s.nodes[i].position));
     }
 
     #[test]
