@@ -8,7 +8,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, crossing, place_key};
-use anastomesh_skeleton::{Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
+use anastomesh_skeleton::{CrotchRule, Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
 use anastomesh_tet::parts::{Counter, Watch};
 use rustc_hash::FxHashMap;
 
@@ -90,8 +90,9 @@ fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
     beyond.into_iter().zip(&cluster.tubes).filter(|(beyond, _)| !beyond).map(|(_, tube)| tube)
 }
 
-/// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them. The web in a
-/// narrow crotch does not count.
+/// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them. The crotch of a
+/// bifurcation does not count, however long it is: there the given tubes overlap, and so do their lumens. Neither does the
+/// web beyond it.
 fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Point3; 2]>, Stop> {
     let skeleton = widened(cluster);
     let adjacency = skeleton.adjacency();
@@ -108,7 +109,8 @@ fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Poi
         watch.spend(PER_PAIR)?;
         if is_far(&o) {
             watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
-            if !walls.is_parted(&o.points[0], &o.points[1]) {
+            let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR };
+            if !walls.is_parted(&o.points[0], &o.points[1]) && !skeleton.is_in_crotch(&adjacency, o, rule) {
                 return Ok(Some(o.points));
             }
         }
@@ -230,6 +232,25 @@ mod tests {
         let tight = helix(1.7);
         let found = of(&tight);
         assert!(found.fused.is_some() && found.outside.is_none(), "{found:?}");
+    }
+
+    #[test]
+    fn a_long_crotch_is_not_fused() {
+        // Two vessels that leave a trunk side by side, and separate after 20 radii.
+        let mut points = vec![[-9.0, 0.0, 0.0], [0.0; 3]];
+        let mut edges = vec![(0, 1)];
+        for side in [-0.5, 0.5] {
+            let mut last = 1;
+            for i in 1..=15 {
+                edges.push((last, points.len() as u32));
+                last = points.len() as u32;
+                points.push([2.0 * f64::from(i), side * (0.5 + 0.15 * f64::from(i)), 0.0]);
+            }
+        }
+        let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
+        let whole = |edges: &[(u32, u32)]| partition(&network(&points, 1.0, edges), &params).expect("a partition");
+        let fork = whole(&edges).clusters.remove(0);
+        assert_eq!(of(&fork), Astray::default());
     }
 
     #[test]

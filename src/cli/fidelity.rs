@@ -6,8 +6,9 @@ use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::log;
 use super::numbers::number;
+use crate::fidelity::Displaced;
 use crate::pipeline::RunReport;
-use crate::report::fidelity::displaced;
+use crate::report::fidelity::{displaced, required};
 use crate::report::verdict::{Verdict, reason};
 use crate::run::{Defect, Limits};
 use anastomesh_network::NameOf;
@@ -62,10 +63,20 @@ impl FidelityArgs {
         defects.iter().filter(|defect| !self.accepts(defect)).collect()
     }
 
-    /// Prints the places that are displaced, and warnings on accepted defects.
-    pub fn tell(&self, common: &Common, defects: &[Defect], run: &RunReport, name: NameOf) {
+    /// Prints the places that are displaced, and warnings on accepted defects. `excused`: the furthest displacement that listed
+    /// changes require.
+    pub fn tell(
+        &self,
+        common: &Common,
+        (defects, excused): (&[Defect], Option<&Displaced>),
+        run: &RunReport,
+        name: NameOf,
+    ) {
         if common.quiet {
             return;
+        }
+        if let Some(place) = excused {
+            log::note(&required(place, name));
         }
         for defect in defects {
             let is_accepted = self.accepts(defect);

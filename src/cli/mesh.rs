@@ -386,7 +386,7 @@ impl Args {
         if !self.common.quiet {
             self.blocks.advise(&run, !made.is_valid());
         }
-        self.fidelity.tell(&self.common, &made.defects, &run, &name);
+        self.fidelity.tell(&self.common, (&made.defects, made.excused.as_ref()), &run, &name);
         let exit = conclude(&self.common, &verdict);
         Ok(if run.failed.is_empty() { exit } else { Exit::StageFailed })
     }

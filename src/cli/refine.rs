@@ -15,7 +15,7 @@ use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::run::{refine_failure, remarks};
 use super::stop::Stop;
-use crate::fidelity::{Changes, Compared, Fidelity, Repairs};
+use crate::fidelity::{Changes, Compared, Displaced, Fidelity, Repairs};
 use crate::pipeline::RunReport;
 use crate::report::page;
 use crate::report::plot::svg;
@@ -198,7 +198,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     let name = |node| network.names.of(NodeId(node));
-    let (fidelity, changes, defects) = pool.install(|| compared(&network, &refined, limits));
+    let Comparison { fidelity, changes, defects, excused } = pool.install(|| compared(&network, &refined, limits));
     let ensures = params.residual == Residual::Shrink;
     let verdict = Verdict::of_refinement(report, ensures, &args.fidelity.refused(&defects), &name);
     let unit = page::LengthUnit(args.network.units.map(|units| units.names()[1]));
@@ -221,18 +221,28 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let rows = fidelity_rows(Some(&fidelity), Some(&changes), &name);
         log::result(&format!("{table}{}", brief(report, &rows, &name, &ended(&files))));
     }
-    args.fidelity.tell(&args.common, &defects, &RunReport::default(), &name);
+    args.fidelity.tell(&args.common, (&defects, excused.as_ref()), &RunReport::default(), &name);
     Ok(conclude(&args.common, &verdict))
 }
 
+/// Comparison of a refined network with the given one.
+struct Comparison {
+    fidelity: Fidelity,
+    changes: Changes,
+    defects: Vec<Defect>,
+    /// Furthest displacement beyond the limit that listed changes require.
+    excused: Option<Displaced>,
+}
+
 /// Compares a refined network with the given one.
-fn compared(network: &PreparedNetwork, refined: &Refined, limits: Limits) -> (Fidelity, Changes, Vec<Defect>) {
+fn compared(network: &PreparedNetwork, refined: &Refined, limits: Limits) -> Comparison {
     let PreparedNetwork { given, outline, skeleton, report: prepare, .. } = network;
     let repairs = Repairs { prepare, refine: Some(&refined.report) };
     let fidelity = Fidelity::of_network(Compared { given, outline, meshed: &refined.skeleton });
     let changes = Changes::of(given, skeleton, &refined.skeleton, repairs, &[]);
-    let defects = limits.unfaithful(given, repairs, &fidelity, &changes);
-    (fidelity, changes, defects)
+    let defects = limits.unfaithful([given, skeleton], repairs, &fidelity, &changes);
+    let excused = limits.excused(repairs, &fidelity, &defects);
+    Comparison { fidelity, changes, defects, excused }
 }
 
 /// Writes a refined network.

@@ -151,15 +151,29 @@ impl Changes {
                 None => taken.push((tip.tip, by)),
             }
         }
-        if taken.is_empty() {
+        // Only tips of merged lines outside the lumen are a loss: most lines begin with others at the inlet.
+        let merged: Vec<(u32, f64)> = merged_tips(vessels, prepare).collect();
+        if taken.is_empty() && merged.is_empty() {
             return;
         }
         let tubes = Tubes::of(made);
+        for (tip, by) in merged {
+            let lost = vessels.length_outside(tip, by, &tubes);
+            if lost > 0.0 {
+                Change::add(&mut self.dropped, lost, tip);
+            }
+        }
         for (tip, by) in taken {
             let lost = vessels.length_outside(tip, by, &tubes);
             Change::add(&mut self.dropped, lost, tip);
         }
     }
+}
+
+/// Tips of lines that were merged with others, with the length of the merged part.
+fn merged_tips(vessels: &Tips, prepare: &PrepareReport) -> impl Iterator<Item = (u32, f64)> {
+    let ends = prepare.merge.merged.iter().flat_map(|m| m.nodes.map(|node| (node, m.length)));
+    ends.filter(|(node, _)| vessels.branches.contains_key(node))
 }
 
 /// Vessels of the given network that end in a terminal, by the index of the terminal in the file.
@@ -237,7 +251,7 @@ impl<'a> Tips<'a> {
 mod tests {
     use super::*;
     use anastomesh_mesh::geometry::{Point3, Vec3};
-    use anastomesh_network::{Spur, SpurReason};
+    use anastomesh_network::{Merged, Spur, SpurReason};
     use anastomesh_skeleton::fixtures::network;
 
     /// A thick vessel with a thin branch of length 10 at its middle.
@@ -267,6 +281,19 @@ mod tests {
         let mut short = given;
         short.nodes[3].position.y = 1.5;
         assert_eq!(of(&short, &made, &prepare, &[]).dropped, Some(Change { count: 1, worst: 0.0, node: 3 }));
+    }
+
+    #[test]
+    fn the_end_of_a_merged_line_counts_outside_the_lumen() {
+        let given = forked();
+        let mut made = given.clone();
+        made.edges.pop();
+        let mut prepare = PrepareReport::default();
+        let run = Merged { nodes: [1, 3], with: [0, 1], length: 10.0, apart: 1.0, partings: Vec::new() };
+        prepare.merge.merged.push(run);
+        let dropped = of(&given, &made, &prepare, &[]).dropped.expect("a loss");
+        assert!((dropped.worst - 15.6).abs() < 0.5 && dropped.node == 3 && dropped.count == 1, "{dropped:?}");
+        assert_eq!(of(&given, &given, &prepare, &[]).dropped, None);
     }
 
     #[test]

@@ -456,7 +456,7 @@ fn refinement_separates_two_trees_that_share_their_terminals() {
     let run = |s: &Skeleton| refine(s, &RefineParams::default(), &()).expect("refined");
     let grown = dual(&run(&tangle(4, 3)).skeleton).skeleton;
     let refined = run(&grown);
-    let before = Figures::of(&grown);
+    let before = Figures::of(&grown, false);
     let r = &refined.report;
     assert!(before.overlaps > 20 && r.moved.overlaps <= before.overlaps / 20, "{} {:?}", before.overlaps, r.moved);
     assert_eq!(r.moved.metrics.folds.count, 0);

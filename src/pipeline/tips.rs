@@ -3,7 +3,9 @@
 use crate::block::{BlockError, Finished, buried};
 use crate::partition::{Cluster, EndKind};
 use crate::surface::{CapError, CapFailure};
+use anastomesh_mesh::geometry::{Tube, place_key};
 use anastomesh_skeleton::NodeId;
+use rustc_hash::FxHashMap;
 
 /// Displacements of a tip to try in turn, in its radii. Positive ones move it outwards, past another vessel of its branch
 /// point. Negative ones move it back, out of another vessel.
@@ -51,7 +53,7 @@ pub fn is_buried(error: &BlockError) -> bool {
 }
 
 /// Returns the cluster with some tips moved, each by a number of its radii. `None` if a vessel is too short, or if a moved
-/// tip lies within another vessel.
+/// tip lies within another vessel. No tip moves outwards by more than the length of its vessel.
 pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
     let mut result = cluster.clone();
     for &(i, radii) in moves {
@@ -61,7 +63,8 @@ pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
         let beyond = end.overrun as usize;
         let last =
             (0..result.tubes.len()).find(|&k| k != beyond && [result.tubes[k].a, result.tubes[k].b].contains(&from))?;
-        if result.tubes[last].length() + way < LEFT * end.section.radius {
+        let is_too_short = result.tubes[last].length() + way < LEFT * end.section.radius;
+        if is_too_short || way > vessel_length(cluster, i, last) {
             return None;
         }
         let tube = &mut result.tubes[last];
@@ -72,6 +75,27 @@ pub fn moved(cluster: &Cluster, moves: &[(u32, f64)]) -> Option<Cluster> {
         end.section.origin = to;
     }
     if buried(&result).next().is_some() { None } else { Some(result) }
+}
+
+/// Length of the vessel of an end within its cluster, up to the next bifurcation. `last` is its tube at the end.
+fn vessel_length(cluster: &Cluster, end: u32, last: usize) -> f64 {
+    let mut around: FxHashMap<[u64; 3], Vec<usize>> = FxHashMap::default();
+    for (i, tube) in cluster.tubes.iter().enumerate() {
+        around.entry(place_key(&tube.a)).or_default().push(i);
+        around.entry(place_key(&tube.b)).or_default().push(i);
+    }
+    let (mut at, mut tube, mut length) = (cluster.ends[end as usize].section.origin, last, 0.0);
+    // At most once along each tube: vessels may form a ring.
+    for _ in 0..cluster.tubes.len() {
+        let Tube { a, b, .. } = cluster.tubes[tube];
+        length += cluster.tubes[tube].length();
+        at = if a == at { b } else { a };
+        match around[&place_key(&at)][..] {
+            [i, j] => tube = if i == tube { j } else { i },
+            _ => break,
+        }
+    }
+    length
 }
 
 /// Text on the displacement of tips.
@@ -98,6 +122,7 @@ mod tests {
             let length = |c: &Cluster| c.tubes.iter().map(anastomesh_mesh::geometry::Tube::length).sum::<f64>();
             assert!((length(&out) - length(&cluster) - end.section.radius).abs() < 1e-9);
             assert_eq!(moved(&cluster, &[(i, -1e3)]), None);
+            assert_eq!(moved(&cluster, &[(i, 1e3)]), None);
         }
         assert_eq!(moved(&cluster, &[(99, 1.0)]), None);
     }

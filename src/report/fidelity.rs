@@ -23,3 +23,12 @@ pub fn displaced(far: &[Displaced], bound: f64, name: NameOf) -> String {
     }
     out
 }
+
+/// Text on the furthest place beyond the limit, if listed changes require it.
+pub fn required(place: &Displaced, name: NameOf) -> String {
+    let radii = place.radii;
+    format!(
+        "axis displaced by {radii:.3} radii near node {}, as an overlap or a listed repair requires",
+        name(place.node)
+    )
+}

@@ -3,7 +3,7 @@
 use super::defect::Defect;
 use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
 use anastomesh_skeleton::{Branch, NodeId, Skeleton};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Default limit of the displacement of a measured axis, in radii.
 pub(super) const MEASURED: f64 = 1.0;
@@ -31,10 +31,10 @@ anastomesh_mesh::setters!(Limits {
 });
 
 impl Limits {
-    /// Differences beyond the limits.
+    /// Differences beyond the limits. `networks`: the given network, and the prepared one before refinement.
     pub(crate) fn unfaithful(
         self,
-        given: &Skeleton,
+        networks: [&Skeleton; 2],
         repairs: Repairs,
         fidelity: &Fidelity,
         changes: &Changes,
@@ -44,7 +44,7 @@ impl Limits {
         if excess.abs() > bound {
             defects.push(Defect::Lumen { excess, bound });
         }
-        defects.extend(self.displaced(given, repairs, fidelity));
+        defects.extend(self.displaced(networks, repairs, fidelity));
         if let Some(vessels) = changes.dropped.filter(|change| change.worst > DROPPED) {
             defects.push(Defect::Dropped { vessels, bound: DROPPED });
         }
@@ -54,11 +54,22 @@ impl Limits {
         defects
     }
 
+    /// Place of the furthest displacement beyond the limit, if there is no defect: listed changes require such displacements.
+    pub(crate) fn excused(self, repairs: Repairs, fidelity: &Fidelity, defects: &[Defect]) -> Option<Displaced> {
+        let bound = self.bound(repairs)?;
+        let is_defect = defects.iter().any(|defect| matches!(defect, Defect::Displaced { .. }));
+        fidelity.axis.furthest.first().filter(|place| !is_defect && place.radii > bound).copied()
+    }
+
+    /// Limit of the displacement; `None` without one.
+    fn bound(self, repairs: Repairs) -> Option<f64> {
+        self.displacement.or(repairs.prepare.measured.then_some(MEASURED))
+    }
+
     /// Places where the axis is further from the given one than it may be.
-    fn displaced(self, given: &Skeleton, repairs: Repairs, fidelity: &Fidelity) -> Option<Defect> {
-        let usual = repairs.prepare.measured.then_some(MEASURED);
-        let bound = self.displacement.or(usual)?;
-        let excused = if self.displacement.is_none() { excused(given, repairs) } else { FxHashSet::default() };
+    fn displaced(self, networks: [&Skeleton; 2], repairs: Repairs, fidelity: &Fidelity) -> Option<Defect> {
+        let bound = self.bound(repairs)?;
+        let excused = if self.displacement.is_none() { excused(networks, repairs) } else { FxHashSet::default() };
         let is_excused = |d: &Displaced| d.meshed.iter().chain(&d.given).any(|node| excused.contains(node));
         let p99 = fidelity.axis.spread.p99;
         let far = fidelity.axis.furthest.iter().take_while(|d| d.radii > bound);
@@ -73,9 +84,22 @@ impl Limits {
     }
 }
 
+/// Nodes of a vessel that resampling removed beside an excused node: the vessel moves there as well.
+fn between(vessel: &[u32], known: &FxHashSet<u32>, excused: &FxHashSet<u32>) -> Vec<u32> {
+    let mut all = Vec::new();
+    let mut start = 0;
+    for end in (1..vessel.len()).filter(|&i| known.contains(&vessel[i]) || i + 1 == vessel.len()) {
+        if excused.contains(&vessel[start]) || excused.contains(&vessel[end]) {
+            all.extend(&vessel[start + 1..end]);
+        }
+        start = end;
+    }
+    all
+}
+
 /// Nodes that a listed change may move far. An overlap required it, the node was split as it has many vessels, or a repair
-/// removed its vessel or moved the vessel's end.
-fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
+/// removed its vessel, merged it with another line, or moved the vessel's end.
+fn excused([given, prepared]: [&Skeleton; 2], repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
     let crowded = refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
@@ -88,8 +112,74 @@ fn excused(given: &Skeleton, repairs: Repairs) -> FxHashSet<u32> {
     let short = prepare.short_tips.iter().map(|t| t.tip);
     let ends: FxHashSet<u32> = touching.chain(short).chain(prepare.spurs.iter().map(|s| s.tip)).collect();
     let cured = |branch: &&Branch| branch.ends().into_iter().any(|n| ends.contains(&name(n)));
-    for branch in given.branches(&adjacency).list.iter().filter(cured) {
+    let branches = given.branches(&adjacency).list;
+    for branch in branches.iter().filter(cured) {
         nodes.extend(branch.nodes.iter().map(|&n| name(n)));
     }
+    let known: FxHashSet<u32> = prepared.nodes.iter().map(|n| n.original).collect();
+    for branch in &branches {
+        let names: Vec<u32> = branch.nodes.iter().map(|&n| name(n)).collect();
+        nodes.extend(between(&names, &known, &nodes));
+    }
+    // Merged ends of lines: of these only the merged part.
+    let merged: FxHashMap<u32, f64> =
+        prepare.merge.merged.iter().flat_map(|m| m.nodes.map(|node| (node, m.length))).collect();
+    for branch in &branches {
+        let (length, [first, last]) = (branch.length(), branch.ends());
+        let is_tip = |n: NodeId| adjacency.valence(n) == 1;
+        let merged_from = |n: NodeId| merged.get(&name(n)).filter(|_| is_tip(n)).map_or(-1.0, |by| by * (1.0 + 1e-9));
+        let [from_first, from_last] = [first, last].map(merged_from);
+        let places = branch.nodes.iter().zip(&branch.arc);
+        let is_merged = |arc: f64| arc <= from_first || length - arc <= from_last;
+        nodes.extend(places.filter(|(_, arc)| is_merged(**arc)).map(|(&n, _)| name(n)));
+    }
     nodes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Vec3;
+    use anastomesh_network::{FarNode, PrepareReport, RefineReport};
+    use anastomesh_skeleton::fixtures::network;
+
+    fn set(nodes: &[u32]) -> FxHashSet<u32> {
+        nodes.iter().copied().collect()
+    }
+
+    #[test]
+    fn points_that_resampling_removed_move_with_their_neighbours() {
+        let vessel = [0, 1, 2, 3, 4, 5, 6];
+        assert_eq!(between(&vessel, &set(&[0, 3, 6]), &set(&[6])), [4, 5]);
+        assert_eq!(between(&vessel, &set(&[0, 3, 6]), &set(&[3])), [1, 2, 4, 5]);
+        assert!(between(&vessel, &set(&[0, 3, 6]), &set(&[])).is_empty());
+    }
+
+    /// A vessel whose middle moved by two radii: a defect, unless an overlap required it.
+    #[test]
+    fn a_displacement_that_an_overlap_requires_is_named_and_no_defect() {
+        let given = network(
+            &[[0.0; 3], [300.0, 0.0, 0.0], [301.0, 0.0, 0.0], [600.0, 0.0, 0.0]],
+            1.0,
+            &[(0, 1), (1, 2), (2, 3)],
+        );
+        let mut meshed = given.clone();
+        meshed.nodes[1].position += Vec3::new(0.0, 2.0, 0.0);
+        let tubes = anastomesh_skeleton::Tubes::of(&meshed);
+        let axis = crate::fidelity::Displacements::of(&given, &meshed, &tubes);
+        let mut fidelity = Fidelity { axis, ..Fidelity::default() };
+        fidelity.axis.spread.p99 = 0.5;
+        let prepare = PrepareReport { measured: true, ..PrepareReport::default() };
+        let of = |demanded: &[FarNode]| {
+            let mut report = RefineReport::default();
+            report.demanded = demanded.to_vec();
+            let repairs = Repairs { prepare: &prepare, refine: Some(&report) };
+            let limits = Limits::default();
+            let defects = limits.unfaithful([&given, &given], repairs, &fidelity, &Changes::default());
+            let excused = limits.excused(repairs, &fidelity, &defects);
+            (defects.len(), excused.is_some())
+        };
+        assert_eq!(of(&[]), (1, false));
+        assert_eq!(of(&[FarNode { node: 1, radii: 2.0 }]), (0, true));
+    }
 }

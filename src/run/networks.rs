@@ -5,7 +5,7 @@ use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_network::{Island, PrepareReport, TouchedBy, TouchingTip, take_back};
 use anastomesh_network::{RefineReport, Refined};
-use anastomesh_skeleton::{EdgeId, LocalDistances, NodeId, Overlap, Skeleton, clean};
+use anastomesh_skeleton::{CrotchRule, EdgeId, LocalDistances, NodeId, Overlap, Skeleton, clean};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
@@ -139,7 +139,8 @@ impl Networks {
     }
 
     /// True if overlaps of the prepared network exclude a valid mesh without refinement. Distant vessels overlap so deeply that
-    /// their walls intersect, or their lumens join. Overlaps at tips do not count, as tips can be retracted.
+    /// their walls intersect, or their lumens join. Overlaps at tips do not count, as tips can be retracted. Neither do those
+    /// in the crotch of a bifurcation.
     pub(super) fn excludes_a_mesh(&self) -> bool {
         let network = &self.prepared;
         let adjacency = network.adjacency();
@@ -159,8 +160,9 @@ impl Networks {
             })
         };
         let overlaps = network.overlaps(&adjacency).pairs;
+        let in_crotch = |o: &Overlap| network.is_in_crotch(&adjacency, o, CrotchRule::default());
         let deep = overlaps.iter().filter(|o| o.distance < HOPELESS * o.radii && !at_tip(o));
-        deep.take(SEARCHED).any(&mut is_far)
+        deep.take(SEARCHED).any(|o| is_far(o) && !in_crotch(o))
     }
 
     /// True if vessels that leave no common bifurcation overlap, with axes closer than a share of their radii.

@@ -5,7 +5,7 @@ use super::error::MeshingError;
 use super::limits::Limits;
 use super::networks::Networks;
 use super::strategy::Attempt;
-use crate::fidelity::{Changes, Fidelity, Repairs};
+use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
 use crate::pipeline::{Clock, MeshPlan, Meshed, RunReport};
 use anastomesh_flow::{Caps, FlowPlan};
 use anastomesh_io::volume::MeshNotes;
@@ -44,6 +44,8 @@ pub struct NetworkMesh<M> {
     pub caps: Option<Caps>,
     /// Defects; empty if the mesh is valid and that of its network.
     pub defects: Vec<Defect>,
+    /// Place of the furthest displacement of the axis beyond the limit that listed changes require; `None` with a defect.
+    pub excused: Option<Displaced>,
 }
 
 impl<M> NetworkMesh<M> {
@@ -66,16 +68,30 @@ impl<M> NetworkMesh<M> {
     /// Result before its evaluation.
     pub(super) fn of(made: Meshed<M>, networks: Networks, attempts: Vec<Attempt>, kept: usize) -> Self {
         let Meshed { mesh, expectation, check, report, network } = made;
-        let (fidelity, changes, caps, defects) = (None, Changes::default(), None, Vec::new());
-        Self { mesh, expectation, check, report, network, networks, attempts, kept, fidelity, changes, caps, defects }
+        let (fidelity, changes, caps, defects, excused) = (None, Changes::default(), None, Vec::new(), None);
+        Self {
+            mesh,
+            expectation,
+            check,
+            report,
+            network,
+            networks,
+            attempts,
+            kept,
+            fidelity,
+            changes,
+            caps,
+            defects,
+            excused,
+        }
     }
 
     /// Replaces the mesh.
     pub(super) fn with_mesh<N>(self, mesh: N) -> NetworkMesh<N> {
         let Self { expectation, check, report, network, networks, attempts, kept, .. } = self;
-        let Self { fidelity, changes, caps, defects, .. } = self;
+        let Self { fidelity, changes, caps, defects, excused, .. } = self;
         let made = Meshed { mesh, expectation, check, report, network };
-        NetworkMesh { fidelity, changes, caps, defects, ..NetworkMesh::of(made, networks, attempts, kept) }
+        NetworkMesh { fidelity, changes, caps, defects, excused, ..NetworkMesh::of(made, networks, attempts, kept) }
     }
 }
 
@@ -101,6 +117,7 @@ impl<M: MeshSource> NetworkMesh<M> {
         let repairs = Repairs { prepare, refine: refine.as_ref() };
         self.changes = Changes::of(given, prepared, &self.network, repairs, &caps);
         self.defects = self.find_defects(plan, limits);
+        self.excused = self.fidelity.as_ref().and_then(|fidelity| limits.excused(repairs, fidelity, &self.defects));
         Ok(self)
     }
 
@@ -117,9 +134,9 @@ impl<M: MeshSource> NetworkMesh<M> {
         }
         // Vessels of missing blocks are no change of the network.
         if let Some(fidelity) = self.fidelity.as_ref().filter(|_| self.report.failed.is_empty()) {
-            let Networks { given, prepare, refine, .. } = &self.networks;
+            let Networks { given, prepared, prepare, refine, .. } = &self.networks;
             let repairs = Repairs { prepare, refine: refine.as_ref() };
-            defects.extend(limits.unfaithful(given, repairs, fidelity, &self.changes));
+            defects.extend(limits.unfaithful([given, prepared], repairs, fidelity, &self.changes));
         }
         defects
     }

@@ -25,6 +25,9 @@ const MAX_VOLUME_ERROR: f64 = 0.05;
 /// other than tubes do, by the width of the field's kernel.
 const WIDER: f64 = 1.2;
 
+/// Distance of axes, in sums of radii, below which vessels are moved apart then: walls of tubes that almost touch fuse.
+const NEAR: f64 = 1.1;
+
 /// Factors on ρ where walls of vessels intersect that do not overlap.
 const FINER: [f64; 2] = [2.0, 4.0];
 
@@ -257,7 +260,7 @@ impl<'a> Meshing<'a, '_> {
             (Strategy::Unrefined, _) => Some(networks.again(None)),
             (Strategy::WiderClearance, Fault::NoMesh | Fault::Invalid) => {
                 let params = self.refine.as_ref()?;
-                let params = params.clone().clearance(WIDER * params.clearance);
+                let params = params.clone().clearance(WIDER * params.clearance).near(NEAR);
                 Some(networks.again(Some(refine(&networks.prepared, &params, self.progress).ok()?)))
             }
             _ => None,

@@ -9,6 +9,9 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 /// Missing half-edge; also marks removed elements.
 pub(crate) const NONE: u32 = u32::MAX;
 
+/// Number of neighbours that are compared in place.
+const FEW: usize = 16;
+
 /// Closed 2-manifold triangle surface under edit.
 #[derive(Clone, Debug)]
 pub(crate) struct HalfEdges {
@@ -259,12 +262,22 @@ impl HalfEdges {
     /// every vertex keeps at least three edges.
     pub(crate) fn can_collapse(&self, h: u32) -> bool {
         let (a, b) = (self.from(h), self.to(h));
-        let common = self.fan(a).filter(|&e| self.joined(self.to(e), b)).count();
+        // Neighbours of `b`, so that its fan is read once.
+        let mut beside = [NONE; FEW];
+        let mut count = 0;
+        for e in self.fan(b) {
+            if count < FEW {
+                beside[count] = self.to(e);
+            }
+            count += 1;
+        }
+        let is_beside = |v: u32| if count <= FEW { beside[..count].contains(&v) } else { self.joined(v, b) };
+        let common = self.fan(a).filter(|&e| is_beside(self.to(e))).count();
         let apexes = [self.apex(h), self.apex(self.twin(h))];
         common == 2
             && apexes[0] != apexes[1]
             && apexes.iter().all(|&v| self.fan(v).nth(3).is_some())
-            && self.valence(a) + self.valence(b) >= 7
+            && self.valence(a) + count >= 7
     }
 
     /// Collapses the start of `h` into its end. Requires `can_collapse`.

@@ -3,9 +3,10 @@
 use super::SurfaceParams;
 use super::field::Field;
 use super::halfedge::HalfEdges;
-use anastomesh_mesh::geometry::{Point3, Section};
+use anastomesh_mesh::geometry::{Point3, Section, Total};
 use anastomesh_skeleton::FineFork;
-use std::collections::VecDeque;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// Maximum growth of the target edge length per unit of distance: edges that share a vertex differ by a fifth.
 pub(crate) const GROWTH: f64 = 0.25;
@@ -74,20 +75,23 @@ fn graded(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams) -> Vec
 
 /// Lowers sizes until neighbours differ by at most [`GROWTH`] times their distance.
 fn grade(surface: &HalfEdges, sizes: &mut [f64]) {
-    let mut queue: VecDeque<u32> = (0..sizes.len() as u32).filter(|&v| surface.has_vertex(v)).collect();
-    let mut queued = vec![true; sizes.len()];
-    // Terminates: sizes only fall, and only to finitely many sums along paths.
-    while let Some(v) = queue.pop_front() {
-        queued[v as usize] = false;
-        let size = sizes[v as usize];
+    let lowers = |sizes: &[f64], v: u32, h: u32| {
+        let (size, there) = (sizes[v as usize], sizes[surface.to(h) as usize]);
+        there > size && there > size + GROWTH * surface.length(h)
+    };
+    let is_source = |&v: &u32| surface.has_vertex(v) && surface.fan(v).any(|h| lowers(sizes, v, h));
+    let sources = (0..sizes.len() as u32).filter(is_source);
+    // The smallest size first (Dijkstra's algorithm), so that each vertex is final when its turn comes.
+    let mut heap: BinaryHeap<Reverse<(Total, u32)>> = sources.map(|v| Reverse((Total(sizes[v as usize]), v))).collect();
+    while let Some(Reverse((Total(size), v))) = heap.pop() {
+        if size > sizes[v as usize] {
+            continue;
+        }
         for h in surface.fan(v) {
-            let to = surface.to(h) as usize;
-            if sizes[to] > size && sizes[to] > size + GROWTH * surface.length(h) {
-                sizes[to] = size + GROWTH * surface.length(h);
-                if !queued[to] {
-                    queued[to] = true;
-                    queue.push_back(to as u32);
-                }
+            if lowers(sizes, v, h) {
+                let to = surface.to(h);
+                sizes[to as usize] = size + GROWTH * surface.length(h);
+                heap.push(Reverse((Total(sizes[to as usize]), to)));
             }
         }
     }

@@ -30,6 +30,7 @@ mod chains;
 mod check;
 mod clean;
 pub mod course;
+mod crotch;
 mod crowding;
 pub mod cuttability;
 mod elements;
@@ -51,6 +52,7 @@ mod walk;
 
 pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
+pub use crotch::CrotchRule;
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};

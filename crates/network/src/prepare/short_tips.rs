@@ -8,9 +8,7 @@ use serde::Serialize;
 /// Walls blend before they separate, and a cap needs a piece of its own vessel.
 const MARGIN: f64 = 1.1;
 const OWN: f64 = 0.3;
-/// Maximum extension of a tip, in its radii, if that is more than the length of its vessel.
-const FURTHEST: f64 = 3.0;
-/// Length of a vessel, in radii, up to which it is removed rather than extended by more than its length.
+/// Length of a vessel, in radii, up to which it is removed if its length is too small an extension.
 const STUB: f64 = 1.5;
 
 /// Tip that is too close to its branch point.
@@ -98,7 +96,8 @@ fn find(skeleton: &Skeleton, adjacency: &Adjacency, branches: &Branches, id: Bra
     }
     let short = needed - length;
     let is_stub = short > length && length <= STUB * radius;
-    let put_out = short <= length.max(FURTHEST * radius) && !is_stub;
+    // An extension by more than the length of the vessel is a defect of the mesh.
+    let put_out = short <= length && !is_stub;
     // A longer vessel that leaves the others is not removed: the mesher finds out whether its cap fits.
     let is_short = short > 0.0 && (put_out || !is_outside || length <= STUB * radius);
     is_short.then(|| {

@@ -58,6 +58,10 @@ pub struct TouchingTip {
 const CLEAR: f64 = 1.15;
 /// Maximum retraction of a tip, in sums of the radii.
 const FURTHEST: f64 = 4.0;
+/// Maximum retracted length outside other vessels, in radii. A longer loss is a defect of the mesh, and the overlap is left to
+/// the refinement. The last radius lies within the wall around the new end.
+const LOST: f64 = 2.75;
+const LOST_WHOLE: f64 = 1.9;
 /// Retraction of a tip that could not be capped, in its radii.
 const BACK: f64 = 2.0;
 /// Minimum extension of such a tip, in its radii: a block tries shorter ones. Maximum extension of any tip.
@@ -267,11 +271,16 @@ impl<'a> Work<'a> {
     fn retract(&mut self, way: &TipBranch, radii: f64) -> TouchedBy {
         let last = way.edges[way.edges.len() - 1];
         let keep = LEFT * self.given.tube(last).max_radius();
+        let (mut lost, mut before) = (0.0, 0.0);
         for stand in self.stands(way) {
+            if !self.is_near_a_wall(way, &stand, 0.0) {
+                lost += (stand.arc - before) / stand.radius;
+            }
+            before = stand.arc;
             if stand.arc > way.length - keep {
                 break;
             }
-            if stand.arc > FURTHEST * radii {
+            if stand.arc > FURTHEST * radii || lost > LOST {
                 return TouchedBy::Left;
             }
             if self.in_the_way(way, &stand).is_none() {
@@ -283,20 +292,35 @@ impl<'a> Work<'a> {
         if way.from.is_none() || way.length > FURTHEST * radii + keep {
             return TouchedBy::Left;
         }
-        self.extend_or_remove(way, STEP)
+        self.extend_or_remove(way, STEP, LOST_WHOLE)
     }
 
     /// Extends a tip straight on to the first position with space for a cap. If another vessel is in the way, the vessel of the
-    /// tip is removed. The extension is at least `least` radii, and at most the length of the vessel.
-    fn extend_or_remove(&mut self, way: &TipBranch, least: f64) -> TouchedBy {
+    /// tip is removed, unless that is a `loss` of more than so many radii. The extension is at least `least` radii, and at most the length of the vessel.
+    fn extend_or_remove(&mut self, way: &TipBranch, least: f64, loss: f64) -> TouchedBy {
         let is_buried = self.stands(way).first().is_some_and(|stand| self.is_buried(way, stand));
         if let Some(stand) = self.beyond(way, least).filter(|_| !is_buried) {
             let original = self.nodes[way.tip.index()].original;
             self.nodes[way.tip.index()] = Node { position: stand.point, radius: stand.radius, original };
             return TouchedBy::Extended { by: -stand.arc };
         }
+        if self.lost(way) > loss {
+            return TouchedBy::Left;
+        }
         way.edges.iter().for_each(|e| self.gone[e.index()] = true);
         TouchedBy::Removed
+    }
+
+    /// Length of a path outside other vessels, in its radii.
+    fn lost(&self, way: &TipBranch) -> f64 {
+        let (mut lost, mut before) = (0.0, 0.0);
+        for stand in self.stands(way) {
+            if !self.is_near_a_wall(way, &stand, 0.0) {
+                lost += (stand.arc - before) / stand.radius;
+            }
+            before = stand.arc;
+        }
+        lost
     }
 
     fn beyond(&self, way: &TipBranch, least: f64) -> Option<Stand> {
@@ -340,7 +364,7 @@ impl<'a> Work<'a> {
             None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
                 TouchedBy::Left
             }
-            None => self.extend_or_remove(way, FORTH),
+            None => self.extend_or_remove(way, FORTH, f64::INFINITY),
         }
     }
 

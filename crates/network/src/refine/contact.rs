@@ -1,10 +1,12 @@
 //! Contact handling: pairs of vessels to watch, and the corrections that push them apart.
 
 use super::frame::Frame;
+use super::overlapping::in_crotches;
 use super::push::{Push, project};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
 use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
 use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Distances along the skeleton between the ends of two edges; infinite if long.
 type Ways = [[f64; 2]; 2];
@@ -31,6 +33,8 @@ pub(super) struct Contacts {
     ways: Vec<Ways>,
     /// Pairs of edges that share a node.
     forks: Vec<(NodeId, [EdgeId; 2])>,
+    /// Smaller clearances of some pairs, whose edges are in ascending order.
+    pub smaller: FxHashMap<[EdgeId; 2], f64>,
 }
 
 /// Bounding box of all points within `clearance` radii of a tube's axis.
@@ -40,8 +44,9 @@ fn reach_box(tube: &Tube, clearance: f64) -> Aabb {
 }
 
 impl Contacts {
-    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`.
-    pub fn find(frame: &Frame, clearance: f64, skin: f64) -> Self {
+    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`. In
+    /// `measured` networks without those in the crotch of a bifurcation, which do not overlap.
+    pub fn find(frame: &Frame, clearance: f64, skin: f64, measured: bool) -> Self {
         let s = &frame.skeleton;
         let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
         let tree = Bvh::new(&boxes);
@@ -66,6 +71,8 @@ impl Contacts {
                 },
             )
             .collect();
+        let crotches = if measured { in_crotches(s, &frame.adjacency, clearance) } else { Vec::new() };
+        let crotches: FxHashSet<[EdgeId; 2]> = crotches.into_iter().collect();
         let mut contacts = Self::default();
         for (pairs, ways) in found {
             let shift = contacts.ways.len() as u32;
@@ -78,27 +85,45 @@ impl Contacts {
             let edges = frame.adjacency.edges(node);
             if edges.len() > 2 || frame.is_fold[node.index()] {
                 for (i, &e) in edges.iter().enumerate() {
-                    contacts.forks.extend(edges[..i].iter().map(|&f| (node, [f, e])));
+                    let pairs = edges[..i].iter().map(|&f| (node, [f, e]));
+                    contacts.forks.extend(pairs.filter(|(_, pair)| !crotches.contains(&ascending(*pair))));
                 }
             }
         }
+        contacts.pairs.retain(|pair| !crotches.contains(&ascending(pair.edges)));
         contacts
+    }
+
+    /// Drops pairs whose nodes are all fixed.
+    pub fn drop_fixed(&mut self, frame: &Frame) {
+        let moves = |e: EdgeId| frame.skeleton.edge(e).nodes.iter().any(|n| frame.mobility[n.index()] > 0.0);
+        self.pairs.retain(|pair| pair.edges.into_iter().any(moves));
+        self.forks.retain(|(_, pair)| pair.iter().any(|&e| moves(e)));
     }
 
     /// Corrections of all pairs closer than `clearance` sums of their radii.
     pub fn pushes(&self, frame: &Frame, clearance: f64) -> Vec<Push> {
         let apart = self.pairs.par_iter().with_min_len(512).fold(Vec::new, |mut out, pair| {
-            self.push_apart(frame, pair, clearance, &mut out);
+            self.push_apart(frame, pair, self.clearance(pair.edges, clearance), &mut out);
             out
         });
         let forks = self.forks.par_iter().with_min_len(512).fold(Vec::new, |mut out, fork| {
-            push_fork(frame, fork, clearance, &mut out);
+            push_fork(frame, fork, self.clearance(fork.1, clearance), &mut out);
             out
         });
         // Folds preserve the order of the pairs, for any division of the work.
         let mut all: Vec<Push> = apart.collect::<Vec<_>>().concat();
         all.extend(forks.collect::<Vec<_>>().concat());
         all
+    }
+
+    /// Clearance of a pair.
+    fn clearance(&self, edges: [EdgeId; 2], usual: f64) -> f64 {
+        if self.smaller.is_empty() {
+            usual
+        } else {
+            self.smaller.get(&ascending(edges)).map_or(usual, |c| c.min(usual))
+        }
     }
 
     fn push_apart(&self, frame: &Frame, pair: &Pair, clearance: f64, out: &mut Vec<Push>) {
@@ -118,6 +143,11 @@ impl Contacts {
             push_tubes(frame, pair.edges, [a, b], place, clearance, out);
         }
     }
+}
+
+/// Edges in ascending order.
+fn ascending([e, f]: [EdgeId; 2]) -> [EdgeId; 2] {
+    [e.min(f), e.max(f)]
 }
 
 fn pairs_of(

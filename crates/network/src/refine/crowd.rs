@@ -3,6 +3,7 @@
 
 use super::params::{Crowded, RefineParams};
 use anastomesh_skeleton::{CrowdedTerminals, Node, NodeId, Skeleton};
+use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 
 /// Target distance of terminals, in sums of their radii: their walls must not fuse either.
@@ -10,6 +11,8 @@ const APART: f64 = 1.2;
 /// Target distance of terminals that two trees share. Four vessels of radius r surround the hole between them, from
 /// bifurcations about 2.8 r away. At this distance the hole is 1.6 r wide; at 1.2 r the walls close it.
 const SHARED_APART: f64 = 2.0;
+/// Maximum length of a straight vessel, in distances of its ends.
+const STRAIGHT: f64 = 1.2;
 /// Maximum number of sweeps: a terminal that moves away from one may approach a third.
 const SWEEPS: usize = 100;
 
@@ -41,7 +44,22 @@ pub(super) fn treat(
     let folds = folds.then(|| skeleton.folds(&adjacency));
     let is_end = |n: &NodeId| adjacency.valence(*n) == 1 || folds.as_ref().is_some_and(|folds| folds[n.index()]);
     let ends: Vec<NodeId> = skeleton.node_ids().filter(is_end).collect();
-    let found = skeleton.crowded_among(&ends);
+    // The two ends of a short straight vessel need no space between their caps.
+    let branches = skeleton.branches(&adjacency);
+    let short: FxHashSet<[NodeId; 2]> = (branches.list.iter())
+        .filter(|branch| {
+            let [a, b] = branch.ends().map(|n| skeleton.node(n).position);
+            branch.length() < STRAIGHT * (b - a).norm()
+        })
+        .map(anastomesh_skeleton::Branch::ends)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    let crowded = |s: &Skeleton| {
+        let mut pairs = s.crowded_among(&ends);
+        pairs.retain(|pair| !short.contains(&pair.nodes));
+        pairs
+    };
+    let found = crowded(skeleton);
     let is_free = |pair: &CrowdedTerminals| pair.nodes.iter().all(|n| adjacency.valence(*n) == 1);
     let place = |s: &Skeleton, pair: &CrowdedTerminals| pair.nodes.map(|n| s.node(n).position);
     let before: Vec<_> = found.iter().map(|pair| place(skeleton, pair)).collect();
@@ -49,7 +67,7 @@ pub(super) fn treat(
         Crowded::Keep => vec![false; found.len()],
         Crowded::Part => {
             let apart = |pair: &CrowdedTerminals| if is_free(pair) { APART } else { SHARED_APART };
-            part(skeleton, &found, &ends, apart)
+            part(skeleton, &found, crowded, apart)
         }
         // Pairs shared by two trees remain unchanged.
         Crowded::Merge => found.iter().map(is_free).collect(),
@@ -74,11 +92,11 @@ pub(super) fn treat(
 }
 
 /// Moves the terminals of each pair to a distance of `apart` sums of their radii, each by half the change. Repeats
-/// until all `ends` are clear; returns a flag for each pair.
+/// until none are `crowded`; returns a flag for each pair.
 fn part(
     skeleton: &mut Skeleton,
     found: &[CrowdedTerminals],
-    ends: &[NodeId],
+    crowded: impl Fn(&Skeleton) -> Vec<CrowdedTerminals>,
     apart: impl Fn(&CrowdedTerminals) -> f64,
 ) -> Vec<bool> {
     let mut close = found.to_vec();
@@ -92,7 +110,7 @@ fn part(
                 skeleton.nodes[pair.nodes[1].index()].position += way;
             }
         }
-        close = skeleton.crowded_among(ends);
+        close = crowded(skeleton);
         if close.is_empty() {
             break;
         }
@@ -219,6 +237,14 @@ mod tests {
         assert!((apart - 4.0).abs() < 1e-9, "{apart}");
         let merged = run(&s, &RefineParams { crowded: Crowded::Merge, ..RefineParams::default() });
         assert!(merged.report.crowded.iter().all(|p| !p.resolved));
+    }
+
+    #[test]
+    fn the_ends_of_a_vessel_that_is_wider_than_long_stay() {
+        let s = network(&[[0.0; 3], [0.6, 0.0, 0.0], [30.0, 0.0, 0.0], [60.0, 0.0, 0.0]], 1.0, &[(0, 1), (2, 3)]);
+        let refined = run(&s, &RefineParams::default());
+        assert!(refined.report.crowded.is_empty());
+        assert!((0..4).all(|i| refined.skeleton.nodes[i].position == s.nodes[i].position));
     }
 
     #[test]

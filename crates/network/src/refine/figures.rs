@@ -1,5 +1,6 @@
 //! Quality figures of a state, and comparison of states.
 
+use super::overlapping::overlapping;
 use anastomesh_skeleton::{Metrics, Overlaps, Share, Skeleton};
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Figures {
     /// Metrics of the paper (Fig. 11).
     pub metrics: Metrics,
-    /// Overlapping pairs of edges.
+    /// Overlapping pairs of edges; in measured networks without those in the crotch of a bifurcation.
     pub overlaps: usize,
     /// Overlapping pairs that share a node.
     pub beside: usize,
@@ -102,14 +103,14 @@ impl Metric {
 }
 
 impl Figures {
-    /// Figures of a skeleton.
-    pub fn of(skeleton: &Skeleton) -> Self {
-        Self::with_overlaps(skeleton).0
+    /// Figures of a skeleton. In `measured` networks, overlaps in crotches of bifurcations do not count.
+    pub fn of(skeleton: &Skeleton, measured: bool) -> Self {
+        Self::with_overlaps(skeleton, measured).0
     }
 
-    pub(super) fn with_overlaps(skeleton: &Skeleton) -> (Self, Overlaps) {
+    pub(super) fn with_overlaps(skeleton: &Skeleton, measured: bool) -> (Self, Overlaps) {
         let adjacency = skeleton.adjacency();
-        let overlaps = skeleton.overlaps(&adjacency);
+        let overlaps = overlapping(skeleton, &adjacency, !measured, 1.0);
         let figures = Self {
             metrics: skeleton.metrics(&adjacency),
             overlaps: overlaps.pairs.len(),

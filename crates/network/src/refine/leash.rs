@@ -1,9 +1,10 @@
 //! Displacement limits of a measured network: only overlapping vessels move, and no further than necessary.
 
 use super::frame::Frame;
+use super::overlapping::overlapping;
 use super::params::Freedom;
 use anastomesh_mesh::geometry::{Point3, Total};
-use anastomesh_skeleton::{EdgeId, NodeId, Overlaps, Skeleton};
+use anastomesh_skeleton::{EdgeId, NodeId, Overlap, Overlaps, Skeleton};
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -37,9 +38,7 @@ fn overlaps_nowhere(network: &Skeleton) -> bool {
 
 /// Overlaps of vessels with radii multiplied by a factor.
 fn widened(frame: &Frame, factor: f64) -> Overlaps {
-    let mut wide = frame.skeleton.clone();
-    wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| factor * r));
-    wide.overlaps(&frame.adjacency)
+    overlapping(&frame.skeleton, &frame.adjacency, false, factor)
 }
 
 /// Displacement limits of nodes.
@@ -77,17 +76,22 @@ impl Leashes {
         far
     }
 
-    /// Vessels whose walls may intersect, though their tubes do not overlap.
-    pub(super) fn near(frame: &Frame) -> Overlaps {
-        widened(frame, CLOSE)
+    /// Vessels whose walls may intersect, though their tubes do not overlap: closer than `near` sums of their radii, if that is
+    /// more than usual.
+    pub(super) fn near(frame: &Frame, near: f64) -> Overlaps {
+        widened(frame, near.max(CLOSE))
     }
 
-    /// Overlaps, plus released vessels that almost touch: walls deviate slightly from the radius.
-    pub(super) fn close(frame: &Frame, overlaps: &Overlaps) -> Overlaps {
+    /// Overlaps, plus vessels closer than `near` sums of their radii, and released vessels that almost touch: walls deviate
+    /// slightly from the radius.
+    pub(super) fn close(frame: &Frame, overlaps: &Overlaps, near: f64) -> Overlaps {
         let is_loose = |node: &NodeId| frame.leash[node.index()] > 0.0;
-        let overlapping: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
-        let mut close = widened(frame, CLOSE);
-        close.pairs.retain(|o| overlapping.contains(&o.edges) || o.nodes.iter().flatten().any(is_loose));
+        let known: FxHashSet<[EdgeId; 2]> = overlaps.pairs.iter().map(|o| o.edges).collect();
+        let factor = near.max(CLOSE);
+        let mut close = widened(frame, factor);
+        // The radii are those of the widened vessels.
+        let is_near = |o: &Overlap| factor * o.distance < near * o.radii;
+        close.pairs.retain(|o| known.contains(&o.edges) || is_near(o) || o.nodes.iter().flatten().any(is_loose));
         close
     }
 

@@ -9,9 +9,11 @@ mod forces;
 mod frame;
 mod history;
 mod leash;
+mod overlapping;
 mod params;
 mod push;
 mod residual;
+mod settle;
 mod shape;
 mod solve;
 mod split;
@@ -126,11 +128,12 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     given.check()?;
     let leashes = Leashes::of(params.freedom, given);
     let params = &if leashes.is_some() { unlike_grown(params) } else { params.clone() };
-    let given_figures = Figures::of(given);
+    let measured = leashes.is_some();
+    let given_figures = Figures::of(given, measured);
     let (mut start, splits) = if leashes.is_some() { split_in_place(given) } else { split(given) };
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
     let crowded = crowd::treat(&mut start, &mut origin, params, leashes.is_none());
-    let split_figures = Figures::of(&start);
+    let split_figures = Figures::of(&start, measured);
     let moved = solve::solve(start, &given_figures, params, leashes, progress)?;
     let chosen = moved.best.as_ref().map(|best| best.iteration);
     let bends = moved.best.as_ref().map_or(0, |best| best.bends);
@@ -139,11 +142,11 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
         Some(best) => (best.skeleton, [&origin[..], &best.origin[origin.len()..]].concat()),
         None => (given.clone(), given.nodes.iter().map(|n| n.position).collect()),
     };
-    let at_rest = Figures::of(&skeleton);
+    let at_rest = Figures::of(&skeleton, measured);
     let displacement = Displacement::of(&skeleton, &origin);
     let displacement_radii = Displacement::in_radii(&skeleton, &origin);
     let demanded = leashes.map_or_else(Vec::new, |leashes| leashes.demanded(&skeleton, &origin));
-    let (residual, result) = treat_residual(&mut skeleton, &mut origin, &at_rest, &given_figures, params);
+    let (residual, result) = treat_residual(&mut skeleton, &mut origin, [&at_rest, &given_figures], measured, params);
     let report = RefineReport {
         size_before: [given.nodes.len(), given.edges.len()],
         size_after: [skeleton.nodes.len(), skeleton.edges.len()],
@@ -190,24 +193,24 @@ fn unlike_grown(params: &RefineParams) -> RefineParams {
     params
 }
 
-/// Treats remaining overlaps. Reverts if shrinking made a protected metric worse than in the input.
+/// Treats remaining overlaps of a state with the first figures. Reverts if shrinking made a protected metric worse than in the input.
 fn treat_residual(
     skeleton: &mut Skeleton,
     origin: &mut Vec<Point3>,
-    at_rest: &Figures,
-    given: &Figures,
+    [at_rest, given]: [&Figures; 2],
+    measured: bool,
     params: &RefineParams,
 ) -> (ResidualReport, Figures) {
     let before = (skeleton.clone(), origin.clone());
-    let report = residual::treat(skeleton, origin, params);
+    let report = residual::treat(skeleton, origin, measured, params);
     if report.shrunk_edges == 0 {
         return (report, *at_rest);
     }
-    let after = Figures::of(skeleton);
+    let after = Figures::of(skeleton, measured);
     if after.worse_than(given, &params.hold).is_empty() {
         return (report, after);
     }
     (*skeleton, *origin) = before;
     let listed = RefineParams { residual: Residual::Report, ..params.clone() };
-    (residual::treat(skeleton, origin, &listed), *at_rest)
+    (residual::treat(skeleton, origin, measured, &listed), *at_rest)
 }

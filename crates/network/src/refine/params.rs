@@ -66,6 +66,8 @@ pub struct RefineParams {
     pub angle_rate: f64,
     /// Target distance of two vessel axes, in sums of their radii.
     pub clearance: f64,
+    /// Distance of two axes, in sums of the radii, below which measured vessels move as if they overlapped.
+    pub near: f64,
     /// Displacement limit of terminals and roots, in the unit of the skeleton; 0 fixes them.
     pub free_terminals: f64,
     /// Displacement limit of any node, in the paper's unit.
@@ -95,6 +97,7 @@ anastomesh_mesh::setters!(RefineParams {
     repel_rate: f64,
     angle_rate: f64,
     clearance: f64,
+    near: f64,
     free_terminals: f64,
     furthest: f64,
     freedom: Freedom,
@@ -116,6 +119,7 @@ impl Default for RefineParams {
             repel_rate: 0.3,
             angle_rate: 0.02,
             clearance: 1.2,
+            near: 1.0,
             free_terminals: 0.0,
             furthest: 21.0,
             freedom: Freedom::Auto,
@@ -169,6 +173,7 @@ impl RefineParams {
             ("the repel rate", self.repel_rate, 0.0, 1e6, "from 0 to 1e6"),
             ("the angle rate", self.angle_rate, 0.0, 1.0, "from 0 to 1"),
             ("the clearance", self.clearance, 1.0, 4.0, "from 1 to 4"),
+            ("the distance of vessels that move", self.near, 1.0, 4.0, "from 1 to 4"),
             ("the way that terminals are free to go", self.free_terminals, 0.0, f64::MAX, at_least_0),
             ("the furthest way of a node", self.furthest, 0.0, f64::INFINITY, at_least_0),
             ("the largest shrinking", self.shrink, 0.0, 0.3, "from 0 to 0.3"),

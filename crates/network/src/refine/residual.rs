@@ -1,5 +1,6 @@
 //! Treatment of overlaps that remain after the iterations.
 
+use super::overlapping::overlapping;
 use super::params::{RefineParams, Residual};
 use anastomesh_mesh::geometry::{Point3, Tube};
 use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Skeleton};
@@ -71,10 +72,16 @@ fn total_volume(skeleton: &Skeleton) -> f64 {
     skeleton.edge_ids().map(|e| volume(&skeleton.tube(e))).sum()
 }
 
-/// Treats remaining overlaps. New nodes are also added to `origin`.
-pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &RefineParams) -> ResidualReport {
+/// Treats remaining overlaps; in `measured` networks, crotches are none. New nodes are also added to `origin`.
+pub(super) fn treat(
+    skeleton: &mut Skeleton,
+    origin: &mut Vec<Point3>,
+    measured: bool,
+    params: &RefineParams,
+) -> ResidualReport {
     let adjacency = skeleton.adjacency();
-    let found = skeleton.overlaps(&adjacency).pairs;
+    let overlaps_of = |s: &Skeleton| overlapping(s, &s.adjacency(), !measured, 1.0).pairs;
+    let found = overlaps_of(skeleton);
     let mut report = ResidualReport { volume: total_volume(skeleton), ..ResidualReport::default() };
     let treatment = if params.residual == Residual::Fuse { Treatment::Fused } else { Treatment::Left };
     let entry = |skeleton: &Skeleton, o: &Overlap| ResidualPair {
@@ -96,7 +103,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
     let edges_before = shrinker.skeleton.edges.len();
     let mut touched = vec![false; edges_before];
     for round in 0..MAX_SHRINK_PASSES {
-        let overlaps = shrinker.skeleton.overlaps(&shrinker.skeleton.adjacency()).pairs;
+        let overlaps = overlaps_of(shrinker.skeleton);
         let mut changed = false;
         for overlap in &overlaps {
             let kept = shrinker.shrink(overlap);
@@ -114,7 +121,7 @@ pub(super) fn treat(skeleton: &mut Skeleton, origin: &mut Vec<Point3>, params: &
             break;
         }
     }
-    let after = skeleton.overlaps(&skeleton.adjacency()).pairs;
+    let after = overlaps_of(skeleton);
     let originals = |o: &Overlap| o.nodes.map(|ends| ends.map(|n| skeleton.node(n).original));
     let still: FxHashSet<[[u32; 2]; 2]> = after.iter().map(originals).collect();
     for pair in &mut report.pairs {

@@ -7,9 +7,10 @@ use super::forces::{self, Rates};
 use super::frame::Frame;
 use super::history::{Displacement, HistorySample};
 use super::leash::Leashes;
+use super::overlapping::overlapping;
 use super::params::{RefineError, RefineParams};
 use super::push::Push;
-use super::{cut_length, shape, tighten};
+use super::{cut_length, settle, shape, tighten};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{Barrier, Overlaps, Skeleton, paper_unit};
@@ -98,6 +99,7 @@ pub(super) fn solve(
     let mut best = best.state;
     if let (Some(_), Some(state)) = (leashes, &mut best) {
         tighten::tighten(&mut state.skeleton, &state.origin, params.clearance);
+        settle::settle(&mut state.skeleton, &state.origin, params.clearance, solver.unit, progress)?;
     }
     Ok(Moved { best, history, unit: solver.unit })
 }
@@ -115,7 +117,7 @@ struct Best {
 impl Best {
     /// Keeps the solver's state if it improves the score and no protected metric is worse than in the input.
     fn offer(&mut self, solver: &Solver, iteration: usize) -> Overlaps {
-        let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton);
+        let (figures, overlaps) = Figures::with_overlaps(&solver.frame.skeleton, solver.leashes.is_some());
         let score = if solver.leashes.is_some() { [figures.overlaps, 0, 0, 0] } else { figures.score() };
         let held = figures.worse_than(&self.given, &solver.params.hold).is_empty();
         if held && self.score.is_none_or(|best| score <= best) {
@@ -192,7 +194,7 @@ impl<'a> Solver<'a> {
         if self.moved.iter().any(|&m| m > 0.5 * skin) {
             // Frees the old contacts first, to save memory.
             self.contacts = Contacts::default();
-            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin);
+            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin, self.leashes.is_some());
             self.moved.fill(0.0);
         }
         let mut sum = vec![Vec3::zeros(); self.moved.len()];
@@ -260,8 +262,8 @@ impl<'a> Solver<'a> {
         self.bends += bends;
         self.frame.rejoin();
         if let Some(leashes) = self.leashes {
-            let again = if bends > 0 { Some(self.frame.skeleton.overlaps(&self.frame.adjacency)) } else { None };
-            let close = Leashes::close(&self.frame, again.as_ref().unwrap_or(overlaps));
+            let again = if bends > 0 { Some(self.overlaps()) } else { None };
+            let close = Leashes::close(&self.frame, again.as_ref().unwrap_or(overlaps), self.params.near);
             leashes.loosen(&mut self.frame, &close);
         }
         self.restart();
@@ -273,9 +275,9 @@ impl<'a> Solver<'a> {
         if self.leashes.is_none() || !self.params.bends {
             return;
         }
-        let overlaps = self.frame.skeleton.overlaps(&self.frame.adjacency);
-        let near = if overlaps.pairs.is_empty() { Leashes::near(&self.frame) } else { overlaps };
-        self.bends += divide_near(&mut self.frame, &near);
+        let overlaps = self.overlaps();
+        let near = self.released(&overlaps);
+        self.bends += divide_near(&mut self.frame, near.as_ref().unwrap_or(&overlaps));
         self.frame.rejoin();
         self.restart();
     }
@@ -284,10 +286,21 @@ impl<'a> Solver<'a> {
     /// nothing may move.
     fn loosen(&mut self, overlaps: &Overlaps) -> bool {
         let Some(leashes) = self.leashes else { return true };
-        let near = if overlaps.pairs.is_empty() { Some(Leashes::near(&self.frame)) } else { None };
+        let near = self.released(overlaps);
         let overlaps = near.as_ref().unwrap_or(overlaps);
         leashes.loosen(&mut self.frame, overlaps);
         !overlaps.pairs.is_empty()
+    }
+
+    /// Overlaps of the present state.
+    fn overlaps(&self) -> Overlaps {
+        overlapping(&self.frame.skeleton, &self.frame.adjacency, self.leashes.is_none(), 1.0)
+    }
+
+    /// Vessels to release at first, if those are not the overlapping ones.
+    fn released(&self, overlaps: &Overlaps) -> Option<Overlaps> {
+        let near = self.params.near;
+        (near > 1.0 || overlaps.pairs.is_empty()).then(|| Leashes::near(&self.frame, near))
     }
 
     fn sample(&self, iteration: usize, asked: usize) -> HistorySample {

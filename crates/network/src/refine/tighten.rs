@@ -3,6 +3,7 @@
 //! The iterations push vessels apart with a margin, and overshoot. Here each group of vessels that moved together goes back
 //! towards its place, as far as its vessels keep a smaller clearance.
 
+use super::overlapping::overlapping;
 use anastomesh_mesh::geometry::{DisjointSets, Point3};
 use anastomesh_skeleton::{Adjacency, Overlaps, Skeleton};
 
@@ -11,13 +12,18 @@ const KEPT: f64 = 0.4;
 /// Bisections of the displacement. The result is within 1/64 of it.
 const BISECTIONS: usize = 6;
 
+/// Clearance that vessels keep for a target `clearance` of the iterations, both in sums of radii.
+pub(super) fn kept(clearance: f64) -> f64 {
+    1.0 + KEPT * (clearance - 1.0)
+}
+
 /// Moves displaced nodes back towards `origin` as far as possible. `clearance`: target distance of the iterations, in sums of
 /// radii.
 pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64) {
     let Some(groups) = Groups::of(skeleton, origin, clearance) else { return };
     let moved: Vec<Point3> = skeleton.nodes.iter().map(|n| n.position).collect();
     let adjacency = skeleton.adjacency();
-    let kept = 1.0 + KEPT * (clearance - 1.0);
+    let kept = kept(clearance);
     // Fractions of the displacement that are too small, and that suffice.
     let mut too_small = vec![0.0; groups.count];
     let mut enough = vec![1.0; groups.count];
@@ -54,21 +60,19 @@ pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64
 }
 
 /// Pairs of vessels closer than `clearance` times the sum of their radii.
-fn close(skeleton: &Skeleton, adjacency: &Adjacency, clearance: f64) -> Overlaps {
-    let mut wide = skeleton.clone();
-    wide.edges.iter_mut().for_each(|edge| edge.radii = edge.radii.map(|r| clearance * r));
-    wide.overlaps(adjacency)
+pub(super) fn close(skeleton: &Skeleton, adjacency: &Adjacency, clearance: f64) -> Overlaps {
+    overlapping(skeleton, adjacency, false, clearance)
 }
 
 /// Displaced nodes that are joined by vessels or by an overlap.
-struct Groups {
-    count: usize,
+pub(super) struct Groups {
+    pub count: usize,
     /// Group of each node; `None` if it has not moved.
-    of_node: Vec<Option<usize>>,
+    pub of_node: Vec<Option<usize>>,
 }
 
 impl Groups {
-    fn of(skeleton: &Skeleton, origin: &[Point3], clearance: f64) -> Option<Self> {
+    pub fn of(skeleton: &Skeleton, origin: &[Point3], clearance: f64) -> Option<Self> {
         let has_moved: Vec<bool> = skeleton.nodes.iter().zip(origin).map(|(n, o)| n.position != *o).collect();
         if !has_moved.contains(&true) {
             return None;
@@ -104,7 +108,7 @@ impl Groups {
     }
 
     /// True for each group with a node of one of the pairs.
-    fn touching(&self, close: &Overlaps) -> Vec<bool> {
+    pub fn touching(&self, close: &Overlaps) -> Vec<bool> {
         let mut touching = vec![false; self.count];
         for node in close.pairs.iter().flat_map(|o| o.nodes).flatten() {
             if let Some(group) = self.of_node[node.index()] {

@@ -1,0 +1,194 @@
+//! Return of displaced nodes towards their places.
+//!
+//! A group of vessels goes back as a whole in `tighten`, until the first two of them touch. Here each node goes back by
+//! itself: it is pulled to its place, and projection keeps the vessels apart. No node ends further away than it was.
+
+use super::contact::Contacts;
+use super::frame::Frame;
+use super::params::RefineError;
+use super::shape;
+use super::tighten::{Groups, close, kept};
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::progress::Progress;
+use anastomesh_skeleton::{EdgeId, Overlap, Skeleton};
+use rustc_hash::FxHashMap;
+
+/// Number of pulls, and fraction of the displacement that each takes back.
+const PULLS: usize = 40;
+const PULL: f64 = 0.12;
+/// Projections after each pull, and after the last one.
+const PROJECTIONS: usize = 4;
+const LAST_PROJECTIONS: usize = 80;
+/// Factor on the clearance of the projections, which leave pairs slightly short of it.
+const MARGIN: f64 = 1.005;
+/// Exponent of the combined correction of a node, as in the iterations.
+const AVERAGE: f64 = 0.25;
+/// Relative distance by which a pair may come closer than it was, or than the clearance.
+const TOLERANCE: f64 = 0.004;
+
+/// Moves displaced nodes back towards `origin`. `clearance`: target distance of the iterations, in sums of radii; `unit`: the
+/// paper's unit.
+///
+/// # Errors
+/// [`RefineError::Cancelled`].
+pub(super) fn settle(
+    skeleton: &mut Skeleton,
+    origin: &[Point3],
+    clearance: f64,
+    unit: f64,
+    progress: &dyn Progress,
+) -> Result<(), RefineError> {
+    let Some(groups) = Groups::of(skeleton, origin, clearance) else { return Ok(()) };
+    let adjacency = skeleton.adjacency();
+    let touching = |s: &Skeleton| close(s, &adjacency, kept(clearance));
+    // Distances of pairs that lack the clearance already, relative to it.
+    let relative = |o: &Overlap| o.distance / o.radii;
+    let before: FxHashMap<[EdgeId; 2], f64> = touching(skeleton).pairs.iter().map(|o| (o.edges, relative(o))).collect();
+    let settled = settled(skeleton, origin, (&groups.of_node, &before), kept(clearance), unit, progress)?;
+    // Groups that come too close to others return to where they were. Then others may be too close to these.
+    let mut returns = vec![false; groups.count];
+    for _ in 0..groups.count.max(1) {
+        if progress.is_cancelled() {
+            return Err(RefineError::Cancelled);
+        }
+        let mut state = skeleton.clone();
+        for (i, group) in groups.of_node.iter().enumerate() {
+            if group.is_some_and(|g| !returns[g]) {
+                state.nodes[i].position = settled[i];
+            }
+        }
+        let mut after = touching(&state);
+        after.pairs.retain(|o| relative(o) < before.get(&o.edges).copied().unwrap_or(1.0) - TOLERANCE);
+        if after.pairs.is_empty() {
+            *skeleton = state;
+            break;
+        }
+        let worse = groups.touching(&after);
+        if (0..groups.count).all(|g| returns[g] || !worse[g]) {
+            break;
+        }
+        returns.iter_mut().zip(worse).for_each(|(returns, worse)| *returns |= worse);
+    }
+    Ok(())
+}
+
+/// Positions of the nodes after pulls and projections. Nodes without a group stay. `before`: relative distances of pairs
+/// without the clearance, which keep these.
+fn settled(
+    skeleton: &Skeleton,
+    origin: &[Point3],
+    (groups, before): (&[Option<usize>], &FxHashMap<[EdgeId; 2], f64>),
+    clearance: f64,
+    unit: f64,
+    progress: &dyn Progress,
+) -> Result<Vec<Point3>, RefineError> {
+    let mut frame = Frame::new(skeleton.clone(), 0.0, f64::INFINITY, unit);
+    frame.hold();
+    frame.origin = origin.to_vec();
+    let mut furthest: f64 = 0.0;
+    for node in skeleton.node_ids().filter(|n| groups[n.index()].is_some()) {
+        let off = (frame.at(node) - origin[node.index()]).norm();
+        frame.loosen(node, off);
+        furthest = furthest.max(off);
+    }
+    // A node stays within its displacement of its place, so that these pairs suffice.
+    let mut contacts = Contacts::find(&frame, MARGIN * clearance, 4.0 * furthest, true);
+    contacts.drop_fixed(&frame);
+    // Pairs that cannot have the clearance would push all nodes around them for nothing.
+    contacts.smaller = before.iter().map(|(&pair, relative)| (pair, MARGIN * clearance * relative)).collect();
+    for pull in 0..=PULLS {
+        if progress.is_cancelled() {
+            return Err(RefineError::Cancelled);
+        }
+        if pull < PULLS {
+            for i in (0..origin.len()).filter(|&i| frame.mobility[i] > 0.0) {
+                let from = frame.skeleton.nodes[i].position;
+                frame.skeleton.nodes[i].position = from + (origin[i] - from) * PULL;
+            }
+        }
+        for _ in 0..if pull < PULLS { PROJECTIONS } else { LAST_PROJECTIONS } {
+            if !project(&mut frame, &contacts, MARGIN * clearance) {
+                break;
+            }
+        }
+    }
+    Ok(frame.skeleton.nodes.iter().map(|n| n.position).collect())
+}
+
+/// Pushes vessels apart once. Returns false if all have the clearance.
+fn project(frame: &mut Frame, contacts: &Contacts, clearance: f64) -> bool {
+    let pushes = contacts.pushes(frame, clearance);
+    if pushes.is_empty() {
+        return false;
+    }
+    let n = frame.origin.len();
+    let (mut sum, mut count) = (vec![Vec3::zeros(); n], vec![0_u32; n]);
+    for (node, push) in pushes {
+        sum[node.index()] += push;
+        count[node.index()] += 1;
+    }
+    sum.iter_mut().zip(&count).for_each(|(sum, &count)| *sum /= f64::from(count.max(1)).powf(AVERAGE));
+    shape::smooth_steps(frame, &mut sum, &count);
+    for (i, step) in sum.iter().enumerate().filter(|(_, step)| step.norm_squared() > 0.0) {
+        let home = frame.origin[i];
+        let way = frame.skeleton.nodes[i].position + step - home;
+        let share = (frame.leash[i] / way.norm()).min(1.0);
+        frame.skeleton.nodes[i].position = home + way * share;
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_skeleton::fixtures::network;
+
+    /// A vessel along x, and one along y that came from a height of 1.2 and went up to `height`, far beyond the crossing too.
+    fn crossing(height: f64) -> (Skeleton, Vec<Point3>) {
+        let ys = [-12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0];
+        let place = |&y: &f64| [0.0, y, if y.abs() < 12.0 { height } else { 1.2 }];
+        let mut points = vec![[-9.0, 0.0, 0.0], [9.0, 0.0, 0.0]];
+        points.extend(ys.iter().map(place));
+        let edges: Vec<(u32, u32)> = [(0, 1)].into_iter().chain((2..8).map(|i| (i, i + 1))).collect();
+        let skeleton = network(&points, 1.0, &edges);
+        let mut origin: Vec<Point3> = skeleton.nodes.iter().map(|n| n.position).collect();
+        origin[2..].iter_mut().for_each(|p| p.z = 1.2);
+        (skeleton, origin)
+    }
+
+    #[test]
+    fn nodes_go_back_by_themselves() {
+        let (mut skeleton, origin) = crossing(2.4);
+        let before = skeleton.clone();
+        settle(&mut skeleton, &origin, 1.2, 1.0, &()).unwrap();
+        let heights: Vec<f64> = skeleton.nodes[2..].iter().map(|n| n.position.z).collect();
+        assert!((2.1..2.39).contains(&heights[3]), "{heights:?}");
+        assert!(heights[1] < 2.0 && heights[5] < 2.0, "{heights:?}");
+        assert!(close(&skeleton, &skeleton.adjacency(), kept(1.2)).pairs.is_empty());
+        let off = |s: &Skeleton, i: usize| (s.nodes[i].position - origin[i]).norm();
+        assert!((0..skeleton.nodes.len()).all(|i| off(&skeleton, i) <= off(&before, i) + 1e-12));
+    }
+
+    #[test]
+    fn vessels_that_are_too_close_come_no_closer() {
+        let (mut skeleton, origin) = crossing(1.9);
+        let relative =
+            |s: &Skeleton| close(s, &s.adjacency(), 1.2).pairs.iter().map(|o| o.distance / o.radii).collect();
+        let before: Vec<f64> = relative(&skeleton);
+        settle(&mut skeleton, &origin, 1.2, 1.0, &()).unwrap();
+        let after: Vec<f64> = relative(&skeleton);
+        assert!(after.iter().all(|x| *x >= before[0] - TOLERANCE), "{before:?} {after:?}");
+    }
+
+    #[test]
+    fn it_can_be_cancelled() {
+        struct Stops;
+        impl Progress for Stops {
+            fn is_cancelled(&self) -> bool {
+                true
+            }
+        }
+        let (mut skeleton, origin) = crossing(2.4);
+        assert_eq!(settle(&mut skeleton, &origin, 1.2, 1.0, &Stops), Err(RefineError::Cancelled));
+    }
+}
