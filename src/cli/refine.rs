@@ -179,7 +179,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     args.report.ensure_writable()?;
     let limits = args.fidelity.limits()?;
     let pool = thread_pool(args.common.threads)?;
-    let network = pool.install(|| args.network.prepared(&args.cures.params(true)))?;
+    let network = pool.install(|| args.network.prepared(&args.cures.params(true).lossless(true)))?;
     if !args.common.quiet {
         for remark in remarks(&network.notes, &network.report, &network.names, args.common.verbose) {
             log::note(&remark);

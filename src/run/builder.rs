@@ -116,9 +116,10 @@ impl Run {
     /// # Errors
     /// If a plan is out of range, the network cannot be used, or a named inlet is not a terminal.
     pub fn prepared(self) -> Result<PreparedRun, MeshingError> {
-        let Self { file, mut plan, prepare: params, refine, mut roots, extension, flow, limits } = self;
+        let Self { file, mut plan, prepare: mut params, refine, mut roots, extension, flow, limits } = self;
         plan.validate()?;
         flow.check()?;
+        params.lossless |= refine.is_some();
         let NetworkFile { skeleton: raw, groups, notes, names, roots: roots_of_file, .. } = file;
         let Prepared { skeleton, given, outline, report } = prepare(&raw, &groups, &params)?;
         // Components that the caller asked to remove are not part of the network to compare with.

@@ -97,8 +97,8 @@ fn between(vessel: &[u32], known: &FxHashSet<u32>, excused: &FxHashSet<u32>) -> 
     all
 }
 
-/// Nodes that a listed change may move far. An overlap required it, the node was split as it has many vessels, or a repair
-/// removed its vessel, merged it with another line, or moved the vessel's end.
+/// Nodes that a listed change may move far. Either an overlap required it, or the node was split as it has many vessels. Or
+/// a repair removed its vessel, merged it with another line, or moved the vessel's end.
 fn excused([given, prepared]: [&Skeleton; 2], repairs: Repairs) -> FxHashSet<u32> {
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));

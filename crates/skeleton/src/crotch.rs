@@ -140,7 +140,7 @@ impl Path {
         (tube.point(t), tube.radius(t))
     }
 
-    /// True if the ends of the path can approach each other until they are joined, such that tubes overlap at both places
+    /// True if the ends of the path can approach each other until they are joined. Tubes must overlap at both places
     /// all the time, except for a length at the beginning. A bifurcation must lie between them at the end.
     fn closes(&self, rule: CrotchRule, beyond: f64) -> bool {
         let (mut low, mut high) = (0.0, self.end());

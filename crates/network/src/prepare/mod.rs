@@ -50,6 +50,9 @@ pub struct PrepareParams {
     pub short_tips: bool,
     /// Treatment of tips that end in or on another vessel.
     pub touching: Touching,
+    /// Leave such tips as they are where a vessel would lose more than about two radii outside other vessels. A refinement
+    /// then moves the vessels apart.
+    pub lossless: bool,
     /// Remove components with fewer nodes than this (0: none).
     pub drop_islands: usize,
     /// Resample polylines.
@@ -71,6 +74,7 @@ anastomesh_mesh::setters!(PrepareParams {
     join: bool,
     short_tips: bool,
     touching: Touching,
+    lossless: bool,
     drop_islands: usize,
     resample: bool,
     smooth: bool,
@@ -104,6 +108,7 @@ impl PrepareParams {
             spurs: false,
             join: false,
             short_tips: false,
+            lossless: false,
             touching: Touching::Keep,
             drop_islands: 0,
             resample: false,
@@ -178,7 +183,7 @@ pub fn prepare(
     if params.short_tips {
         (skeleton, report.short_tips) = short_tips::treat(&skeleton)?;
     }
-    (skeleton, report.touching) = touching::treat(&skeleton, params.touching)?;
+    (skeleton, report.touching) = touching::treat(&skeleton, params.touching, params.lossless)?;
     if params.drop_islands > 0 {
         (skeleton, report.islands) = islands::drop(&skeleton, params.drop_islands)?;
     }

@@ -120,7 +120,7 @@ impl Lists {
                 TouchedBy::Extended { by } => format!("extended by {by:.4}"),
                 TouchedBy::Joined => "joined".into(),
                 TouchedBy::Removed => "removed, as its vessel is too short for a cap".into(),
-                TouchedBy::Left => "kept, as its vessel runs along the other".into(),
+                TouchedBy::Left => "kept, as too much of its vessel would be lost".into(),
             };
             let [a, b] = t.with.map(name);
             format!("tip {} at edge {a}-{b}: {done}", name(t.tip))

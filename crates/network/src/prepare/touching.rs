@@ -58,9 +58,10 @@ pub struct TouchingTip {
 const CLEAR: f64 = 1.15;
 /// Maximum retraction of a tip, in sums of the radii.
 const FURTHEST: f64 = 4.0;
-/// Maximum retracted length outside other vessels, in radii. A longer loss is a defect of the mesh, and the overlap is left to
-/// the refinement. The last radius lies within the wall around the new end.
+/// Maximum retracted length outside other vessels before a refinement, in radii. A longer loss is a defect of the mesh, and
+/// the overlap is left to the refinement. The last radius lies within the wall around the new end.
 const LOST: f64 = 2.75;
+/// Maximum length of a removed vessel outside other vessels before a refinement, in radii.
 const LOST_WHOLE: f64 = 1.9;
 /// Retraction of a tip that could not be capped, in its radii.
 const BACK: f64 = 2.0;
@@ -77,11 +78,15 @@ const STEP: f64 = 0.25;
 const OWN: f64 = 6.0;
 
 /// Treats all tips in ascending order.
-pub(super) fn treat(skeleton: &Skeleton, how: Touching) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
+pub(super) fn treat(
+    skeleton: &Skeleton,
+    how: Touching,
+    lossless: bool,
+) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
     if how == Touching::Keep {
         return Ok((skeleton.clone(), Vec::new()));
     }
-    let mut work = Work::new(skeleton);
+    let mut work = Work { lossless, ..Work::new(skeleton) };
     let mut found = Vec::new();
     for tip in work.adjacency.terminals() {
         if let Some(done) = work.tip(tip, how) {
@@ -122,6 +127,8 @@ struct Work<'a> {
     gone: Vec<bool>,
     /// Edges that join a tip to a position on another edge.
     joints: Vec<(NodeId, EdgeId, f64)>,
+    /// True if a tip stays where its treatment would lose too much.
+    lossless: bool,
 }
 
 /// Remaining part of a branch, starting from its tip.
@@ -161,6 +168,7 @@ impl<'a> Work<'a> {
             nodes: given.nodes.clone(),
             gone: vec![false; given.edges.len()],
             joints: Vec::new(),
+            lossless: false,
         }
     }
 
@@ -280,7 +288,7 @@ impl<'a> Work<'a> {
             if stand.arc > way.length - keep {
                 break;
             }
-            if stand.arc > FURTHEST * radii || lost > LOST {
+            if stand.arc > FURTHEST * radii || self.lossless && lost > LOST {
                 return TouchedBy::Left;
             }
             if self.in_the_way(way, &stand).is_none() {
@@ -292,19 +300,19 @@ impl<'a> Work<'a> {
         if way.from.is_none() || way.length > FURTHEST * radii + keep {
             return TouchedBy::Left;
         }
-        self.extend_or_remove(way, STEP, LOST_WHOLE)
+        self.extend_or_remove(way, STEP)
     }
 
     /// Extends a tip straight on to the first position with space for a cap. If another vessel is in the way, the vessel of the
-    /// tip is removed, unless that is a `loss` of more than so many radii. The extension is at least `least` radii, and at most the length of the vessel.
-    fn extend_or_remove(&mut self, way: &TipBranch, least: f64, loss: f64) -> TouchedBy {
+    /// tip is removed, unless too much is lost. The extension is at least `least` radii, and at most the length of the vessel.
+    fn extend_or_remove(&mut self, way: &TipBranch, least: f64) -> TouchedBy {
         let is_buried = self.stands(way).first().is_some_and(|stand| self.is_buried(way, stand));
         if let Some(stand) = self.beyond(way, least).filter(|_| !is_buried) {
             let original = self.nodes[way.tip.index()].original;
             self.nodes[way.tip.index()] = Node { position: stand.point, radius: stand.radius, original };
             return TouchedBy::Extended { by: -stand.arc };
         }
-        if self.lost(way) > loss {
+        if self.lossless && self.lost(way) > LOST_WHOLE {
             return TouchedBy::Left;
         }
         way.edges.iter().for_each(|e| self.gone[e.index()] = true);
@@ -364,7 +372,7 @@ impl<'a> Work<'a> {
             None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
                 TouchedBy::Left
             }
-            None => self.extend_or_remove(way, FORTH, f64::INFINITY),
+            None => self.extend_or_remove(way, FORTH),
         }
     }
 
@@ -505,9 +513,9 @@ mod tests {
         broken.nodes.extend(other.nodes.iter().map(|n| Node { original: n.original + first, ..*n }));
         let moved = |e: &Edge| Edge { nodes: e.nodes.map(|n| NodeId(n.0 + first)), ..*e };
         broken.edges.extend(other.edges.iter().map(moved));
-        let (_, told) = treat(&broken, Touching::Retract).expect("vessels");
+        let (_, told) = treat(&broken, Touching::Retract, false).expect("vessels");
         assert!(told.iter().any(|tip| tip.done != TouchedBy::Left), "{told:?}");
-        let (joined, _) = treat(&broken, Touching::Join).expect("vessels");
+        let (joined, _) = treat(&broken, Touching::Join, false).expect("vessels");
         assert_eq!(joined.components(&joined.adjacency()).list.len(), 1);
     }
 }

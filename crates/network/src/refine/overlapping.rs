@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// Overlaps of vessels with radii multiplied by a factor. Without `crotches`, the overlaps in crotches of bifurcations do not
-/// count: measured vessels leave bifurcations at small angles, and their lumens divide where the tubes separate.
+/// count. Measured vessels leave bifurcations at small angles, and their lumens divide where the tubes separate.
 pub(super) fn overlapping(skeleton: &Skeleton, adjacency: &Adjacency, crotches: bool, factor: f64) -> Overlaps {
     let wide = widened(skeleton, factor);
     let mut found = wide.overlaps(adjacency);

@@ -1,7 +1,7 @@
 //! Return of displaced nodes towards their places.
 //!
-//! A group of vessels goes back as a whole in `tighten`, until the first two of them touch. Here each node goes back by
-//! itself: it is pulled to its place, and projection keeps the vessels apart. No node ends further away than it was.
+//! A group of vessels goes back as a whole in `tighten`, until the first two of them touch. Here each node goes back
+//! alone: it is pulled to its place, and projection keeps the vessels apart. No node ends further away than it was.
 
 use super::contact::Contacts;
 use super::frame::Frame;
