@@ -61,7 +61,7 @@ pub(super) fn solution(flow: &Flow, settings: &Settings) -> String {
         text += &solver("U", &format!("{of_velocity}{usual}"));
         text += &solver("UFinal", "        $U;\n        relTol          0;\n");
         text += "}\n\nPIMPLE\n{\n    // Outer correctors repeat a time step, so that the Courant number can exceed 1.\n    \
-                 nOuterCorrectors 3;\n    nCorrectors     1;\n";
+                 nOuterCorrectors 3;\n    // With one corrector, flow through layers of prisms diverges.\n    nCorrectors     2;\n";
         let _ = write!(text, "    nNonOrthogonalCorrectors {correctors};\n}}\n\n");
         text += "relaxationFactors\n{\n    equations       { \".*\" 1; }\n}\n";
         return text;
