@@ -1,6 +1,6 @@
 use super::*;
 use crate::conform::box_corners;
-use crate::input::{SurfaceEdges, validate};
+use crate::input::validate;
 use crate::optimize::Effort as Improvement;
 use crate::options::{Interior, Sizing};
 use crate::plc::InputKind;
