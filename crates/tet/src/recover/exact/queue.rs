@@ -27,7 +27,7 @@ const LEVEL_AFTER: u64 = 1;
 const LARGE: usize = 100;
 
 /// Operations for one part in the first round: per missing edge or triangle, plus a constant. Each round doubles them.
-const PART_OPERATIONS: (u64, u64) = (2_500, 50_000);
+const PART_OPERATIONS: (u64, u64) = (10_000, 200_000);
 
 /// Slots of a complex that are copied in the time of one operation.
 const COPIED: usize = 4;
