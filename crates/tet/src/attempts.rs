@@ -6,30 +6,49 @@ use super::error::TetError;
 use super::recover::exact::{ExactRecovery, Missing, RecoveryStrategy};
 use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
 use super::request::Request;
+use super::sized;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 
 /// Operations of a strategy in the first round: per missing edge or triangle, plus a constant.
-const OPERATIONS: (u64, u64) = (60_000, 20_000_000);
+const OPERATIONS: (u64, u64) = (7_500, 2_500_000);
 
 /// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 8;
 
+/// Factor of the budget for strategies that recover edges in planes first. These take most of the time there, and pay off.
+const LEVEL_SHARE: u64 = 4;
+
 /// Maximum rounds over all strategies.
-const MAX_ROUNDS: u32 = 5;
+const MAX_ROUNDS: u32 = 6;
 
 /// Growth of the operations from round to round.
 const GROWTH: u64 = 4;
 
+/// Budgets relative to those of the round. The later ones follow at once if few parts are left, and while each helps.
+const FURTHER: [u64; 3] = [1, 4, 16];
+
+/// Maximum parts that count as few: a constant, or this fraction of the parts that flips left.
+const FEW: (usize, f64) = (8, 0.002);
+
+/// Strategies are not repeated if they leave more than this fraction of the parts.
+const STALLED: f64 = 0.9;
+
+/// Maximum operations of all rounds: per triangle of the surface, plus a constant.
+const MAX_OPERATIONS: (u64, u64) = (100_000, 2_000_000_000);
+
 /// A complex to start from, and the strategies to try there.
 struct Attempt<'a> {
-    /// Flips make nothing thinner than this; `None` for the complex that is given.
+    /// Flips make nothing thinner than this, if set.
     flat: Option<f64>,
     ways: &'static [RecoveryStrategy],
     recovery: Option<ExactRecovery<'a>>,
     summary: RecoverySummary,
     /// Maximum passes of flips over the missing edges; `None` for the usual number.
     passes: Option<u32>,
+    /// True if the Delaunay complex gets points on both sides of the surface. Long edges then cross few tetrahedra, and the
+    /// points are removed like other Steiner points.
+    filled: bool,
     /// Complex, missing edges and triangles, and summary before any strategy.
     origin: Option<Origin>,
 }
@@ -43,11 +62,21 @@ struct Origin {
     summary: RecoverySummary,
 }
 
+/// Work that is left, and the reason why the last strategy failed.
+struct Effort {
+    /// Operations that all strategies together may still take.
+    left: u64,
+    last: TetError,
+}
+
 /// Complex with the whole surface.
 type Recovered = (Complex, RecoverySummary);
 
-/// Recovers the rest after flips. The strategies of one start are repeated while they recover anything. All are tried
-/// with a small budget before any gets a larger one. `before_flips` are the edges missing in the Delaunay complex.
+/// Recovers the rest after flips. The strategies of one start are repeated while they recover enough. All are tried with
+/// a small budget before any gets a larger one. `before_flips` are the edges missing in the Delaunay complex.
+///
+/// # Errors
+/// Reason of the last failure, once all rounds have failed or [`MAX_OPERATIONS`] are spent.
 pub(super) fn recover_rest(
     r: &Request,
     points: &[Point3],
@@ -58,36 +87,40 @@ pub(super) fn recover_rest(
     let single = flat_height_in_single(&r.surface.points);
     let edges = missing.edges;
     let turned_within = |height| [edges, before_flips].iter().any(|edges| lies_turned(r.surface, edges, height));
-    let is_turned =
-        lies_in_planes(r.surface, edges, flat) || turned_within(flat) || has_flat(&complex, flat, edges.len());
+    let edges_turned = turned_within(flat) || single.is_some_and(turned_within);
+    let is_turned = edges_turned || lies_in_planes(r.surface, edges, flat) || has_flat(&complex, flat, edges.len());
     let turned = single.filter(|&height| turned_within(height)).or(is_turned.then_some(flat));
-    let mut last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
+    let last = TetError::NotRecovered { edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec() };
     let thick = |thickness| Attempt::thick(thickness, &RecoveryStrategy::TURNED);
     // After few flips most of the missing edges lie in planes, where they are exchanged at once.
     let plane = |height| Attempt { passes: Some(1), ..Attempt::thick(height, &RecoveryStrategy::PLANES) };
+    let filled = |flat, ways| Attempt { filled: true, ..Attempt::fresh(flat, ways) };
+    // Where rounding has turned planes, flips that make nothing flat leave less.
     let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();
-    attempts.push(Attempt::given(r, points, complex, missing, flat));
+    let place = if edges_turned { attempts.len() } else { 0 };
+    attempts.insert(place, Attempt::given(r, points.len(), complex, missing, flat));
+    attempts.push(filled(None, &RecoveryStrategy::GIVEN));
+    attempts.extend(turned.map(|height| filled(Some(height), &RecoveryStrategy::TURNED)));
     attempts.extend(turned.map(plane));
     let others = [Some(flat), single].into_iter().flatten().filter(|&thickness| turned != Some(thickness));
     attempts.extend(others.map(thick));
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
+    let whole = MAX_OPERATIONS.0 * r.surface.triangles.len() as u64 + MAX_OPERATIONS.1;
+    let mut effort = Effort { left: whole, last };
     for round in 0..MAX_ROUNDS {
         for attempt in &mut attempts {
             if round > 0 {
                 attempt.reset(r);
             }
-            loop {
-                let before = attempt.missing();
-                if let Some(done) = attempt.run(r, points, GROWTH.pow(round), &mut last)? {
-                    return Ok(done);
-                }
-                if attempt.missing() >= before {
-                    break;
-                }
+            if let Some(done) = attempt.escalate(r, points, GROWTH.pow(round), &mut effort)? {
+                return Ok(done);
+            }
+            if effort.left == 0 {
+                return Err(effort.last);
             }
         }
     }
-    Err(last)
+    Err(effort.last)
 }
 
 /// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
@@ -98,21 +131,35 @@ fn has_flat(complex: &Complex, height: f64, edges: usize) -> bool {
 
 impl<'a> Attempt<'a> {
     /// Starts with the complex left by flips.
-    fn given(r: &Request<'a>, points: &[Point3], complex: Complex, missing: Missing, flat: f64) -> Self {
+    fn given(r: &Request<'a>, points: usize, complex: Complex, missing: Missing, flat: f64) -> Self {
         let summary = RecoverySummary {
             missing_edges: missing.edges.len(),
             missing_triangles: missing.triangles.len(),
-            steiner_points: complex.points.len() - points.len(),
+            steiner_points: complex.points.len() - points,
         };
         let (edges, triangles) = (missing.edges.to_vec(), missing.triangles.to_vec());
         let origin = Origin { complex: complex.clone(), edges, triangles, summary: summary.clone() };
         let recovery = Some(ExactRecovery::new(complex, (r.surface, r.edges), missing, flat));
-        Self { flat: None, ways: &RecoveryStrategy::GIVEN, recovery, summary, passes: None, origin: Some(origin) }
+        Self {
+            flat: None,
+            ways: &RecoveryStrategy::GIVEN,
+            recovery,
+            summary,
+            passes: None,
+            filled: false,
+            origin: Some(origin),
+        }
     }
 
     /// Starts with flips that make nothing thinner than `flat`.
     fn thick(flat: f64, ways: &'static [RecoveryStrategy]) -> Self {
-        Self { flat: Some(flat), ways, recovery: None, summary: RecoverySummary::default(), passes: None, origin: None }
+        Self::fresh(Some(flat), ways)
+    }
+
+    /// Starts with the Delaunay complex.
+    fn fresh(flat: Option<f64>, ways: &'static [RecoveryStrategy]) -> Self {
+        let summary = RecoverySummary::default();
+        Self { flat, ways, recovery: None, summary, passes: None, filled: false, origin: None }
     }
 
     /// Returns to the complex left by flips. Parts that are recovered may be in the way of others.
@@ -130,16 +177,65 @@ impl<'a> Attempt<'a> {
         self.recovery.as_ref().map_or(usize::MAX, ExactRecovery::missing)
     }
 
+    /// True if hardly fewer parts are missing than `before`.
+    fn has_stalled(&self, before: usize) -> bool {
+        self.missing() as f64 > STALLED * before as f64
+    }
+
+    /// True if strategies have recovered almost all parts that flips left.
+    fn is_nearly_done(&self) -> bool {
+        let Some(origin) = &self.origin else { return false };
+        let share = FEW.1 * (origin.edges.len() + origin.triangles.len()) as f64;
+        self.missing() <= FEW.0.max(share as usize)
+    }
+
+    /// Tries all strategies with `share` times the operations of the first round. If few parts are left, larger budgets
+    /// follow at once.
+    fn escalate(
+        &mut self,
+        r: &Request<'a>,
+        points: &[Point3],
+        share: u64,
+        effort: &mut Effort,
+    ) -> Result<Option<Recovered>, TetError> {
+        let mut before = usize::MAX;
+        for further in FURTHER {
+            let done = self.repeat(r, points, share * further, effort)?;
+            if done.is_some() || effort.left == 0 || !self.is_nearly_done() || self.has_stalled(before) {
+                return Ok(done);
+            }
+            before = self.missing();
+        }
+        Ok(None)
+    }
+
+    /// Repeats all strategies while one recovers something.
+    fn repeat(
+        &mut self,
+        r: &Request<'a>,
+        points: &[Point3],
+        share: u64,
+        effort: &mut Effort,
+    ) -> Result<Option<Recovered>, TetError> {
+        loop {
+            let before = self.missing();
+            let done = self.run(r, points, share, effort)?;
+            if done.is_some() || effort.left == 0 || self.has_stalled(before) {
+                return Ok(done);
+            }
+        }
+    }
+
     /// Tries all strategies, each with `share` times the operations of the first round.
     fn run(
         &mut self,
         r: &Request<'a>,
         points: &[Point3],
         share: u64,
-        last: &mut TetError,
+        effort: &mut Effort,
     ) -> Result<Option<Recovered>, TetError> {
-        if let Some(flat) = self.flat.filter(|_| self.recovery.is_none())
-            && let Some(done) = self.start(r, points, flat)?
+        if self.recovery.is_none()
+            && let Some(done) = self.start(r, points)?
         {
             return Ok(Some(done));
         }
@@ -147,9 +243,11 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let budget = Budget::new(share * (OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1));
+            let room = if way.level.is_some() { LEVEL_SHARE } else { 1 };
+            let budget = Budget::new(room * share * (OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
+            effort.left = effort.left.saturating_sub(budget.spent());
             match result {
                 Ok((complex, exact)) => {
                     let mut summary = self.summary.clone();
@@ -157,7 +255,7 @@ impl<'a> Attempt<'a> {
                     return Ok(Some((complex, summary)));
                 }
                 Err(TetError::OverBudget { .. } | TetError::NotRecovered { .. }) => {}
-                Err(error @ TetError::Stuck { .. }) => *last = error,
+                Err(error @ TetError::Stuck { .. }) => effort.last = error,
                 Err(error) => return Err(error),
             }
             if recovery.missing() < before
@@ -191,22 +289,29 @@ impl<'a> Attempt<'a> {
     }
 
     /// Repeats the flips. Returns the complex if they recover the whole surface.
-    fn start(&mut self, r: &Request<'a>, points: &[Point3], flat: f64) -> Result<Option<Recovered>, TetError> {
-        let mut complex = delaunay::delaunay_watched(points, r.watch)?;
-        let flips = (Rule::Thick(flat), self.passes.unwrap_or(recover::MAX_FLIP_PASSES));
+    fn start(&mut self, r: &Request<'a>, points: &[Point3]) -> Result<Option<Recovered>, TetError> {
+        let given = points.len();
+        let mut points = points.to_vec();
+        if self.filled {
+            let more = sized::scaffold_points(r, &points)?;
+            points.extend(more);
+        }
+        let mut complex = delaunay::delaunay_watched(&points, r.watch)?;
+        let rule = self.flat.map_or(Rule::Positive, Rule::Thick);
+        let flips = (rule, self.passes.unwrap_or(recover::MAX_FLIP_PASSES));
         match recover::recover_with(&mut complex, r.surface, r.edges, flips, r.watch) {
             Ok(summary) => Ok(Some((complex, summary))),
             Err(TetError::NotRecovered { edges, triangles }) => {
                 let missing = Missing { edges: &edges, triangles: &triangles };
-                *self = Self {
-                    ways: self.ways,
-                    flat: Some(flat),
-                    passes: self.passes,
-                    ..Self::given(r, points, complex, missing, flat)
-                };
+                let flat = self.flat.unwrap_or(flat_height(&r.surface.points));
+                let Self { ways, flat: own, passes, filled, .. } = *self;
+                *self = Self { ways, flat: own, passes, filled, ..Self::given(r, given, complex, missing, flat) };
                 Ok(None)
             }
             Err(error) => Err(error),
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,12 +7,13 @@ use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
     Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
-    graded_points, limit_by_gaps, refine_complex,
+    graded_points, limit_by_gaps, refine_complex, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::{Aabb, Point3};
+use rustc_hash::FxHashSet;
 
 /// Clearance of interior points from the wall, relative to the edge length wanted there.
 const CLEARANCE: f64 = 0.45;
@@ -26,6 +27,12 @@ const GROWING_RATIO: f64 = 1.4;
 
 /// Volume of the lattice's tetrahedra relative to the volume bound.
 pub(super) const VOLUME_SHARE: f64 = 0.6;
+
+/// Margin of the scaffold's points around the surface, relative to its size. The tetrahedralized box is larger.
+const SCAFFOLD_MARGIN: f64 = 0.1;
+
+/// Maximum points of the scaffold inside, per point of the surface.
+const SCAFFOLD_POINTS: f64 = 20.0;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
@@ -133,6 +140,30 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
         within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
     }
     Ok(Some(graded_points(&tree, &wall, r.watch)?))
+}
+
+/// Points on both sides of a surface, none of which is in `others`. They grow apart with the distance from the surface.
+/// Returns none if too many would be needed, for example between long needles.
+///
+/// # Errors
+/// [`TetError::Cancelled`].
+pub(super) fn scaffold_points(r: &Request, others: &[Point3]) -> Result<Vec<Point3>, TetError> {
+    let mut wall = Wall::new(r.surface, r.kind, GROWING_CLEARANCE);
+    limit_by_gaps(&mut wall);
+    let options = TreeOptions::growing(Interior::GROWTH);
+    let Some(tree) = size_tree(&wall, &Sizing::Surface, None, &options) else { return Ok(Vec::new()) };
+    let most = TETS_PER_POINT as f64 * SCAFFOLD_POINTS * r.surface.points.len() as f64;
+    if tree.is_truncated() || estimate_tets(&tree, &wall) > most {
+        return Ok(Vec::new());
+    }
+    let mut points = surrounding_points(&tree, &wall, r.watch)?;
+    let bits = |p: &Point3| [p.x, p.y, p.z].map(f64::to_bits);
+    let known: FxHashSet<[u64; 3]> = others.iter().map(bits).collect();
+    let around = Aabb::of_points(&r.surface.points);
+    let around = around.grown(SCAFFOLD_MARGIN * (around.max - around.min).max());
+    let near = |p: &Point3| (0..3).all(|i| (around.min[i]..=around.max[i]).contains(&p[i]));
+    points.retain(|p| near(p) && !known.contains(&bits(p)));
+    Ok(points)
 }
 
 /// Checks the number of tetrahedra of a uniform lattice with cubes of this side.

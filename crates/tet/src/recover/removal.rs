@@ -149,7 +149,7 @@ fn shape(c: &Complex, tet: &[u32; 4]) -> f64 {
     let p = tet.map(|v| c.points[v as usize]);
     let volume = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])).abs();
     let squared: f64 = (0..4).map(|i| (0..i).map(|j| (p[i] - p[j]).norm_squared()).sum::<f64>()).sum();
-    (volume / squared.powf(1.5)).max(f64::MIN_POSITIVE)
+    (volume / (squared * squared.sqrt())).max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

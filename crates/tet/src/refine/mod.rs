@@ -14,7 +14,7 @@ pub use estimate::{estimate_tets, estimate_uniform};
 pub use gaps::limit_by_gaps;
 pub use goals::{Goals, RegionGoals};
 pub use insert::{RefineReport, refine_complex};
-pub use points::graded_points;
+pub use points::{graded_points, surrounding_points};
 pub use sizes::SizeLimit;
 #[cfg(test)]
 use sizes::vertex_sizes;

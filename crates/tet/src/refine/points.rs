@@ -34,6 +34,24 @@ struct LatticeSite {
 /// # Errors
 /// [`Stop`] if the watch stops it.
 pub fn graded_points(tree: &SizeTree, wall: &Wall, watch: &Watch) -> Result<Vec<Point3>, Stop> {
+    points_on(tree, wall, |p| wall.holds(p), watch)
+}
+
+/// As [`graded_points`], with points on both sides of the surface.
+///
+/// # Errors
+/// See [`graded_points`].
+pub fn surrounding_points(tree: &SizeTree, wall: &Wall, watch: &Watch) -> Result<Vec<Point3>, Stop> {
+    points_on(tree, wall, |_| true, watch)
+}
+
+/// Points that `wanted` accepts, and those known to lie inside.
+fn points_on(
+    tree: &SizeTree,
+    wall: &Wall,
+    wanted: impl Fn(&Point3) -> bool,
+    watch: &Watch,
+) -> Result<Vec<Point3>, Stop> {
     let sites = sites(tree, wall);
     let finest = tree.levels();
     let mut points = Vec::new();
@@ -44,7 +62,7 @@ pub fn graded_points(tree: &SizeTree, wall: &Wall, watch: &Watch) -> Result<Vec<
         let side = tree.side(level);
         let p = place(tree, group[0].key, side);
         let inside = group.iter().any(|s| s.unknown == 0);
-        if (inside || wall.holds(&p)) && wall.is_clear(&p, side) {
+        if (inside || wanted(&p)) && wall.is_clear(&p, side) {
             points.push(p);
         }
     }

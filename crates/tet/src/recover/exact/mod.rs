@@ -58,6 +58,8 @@ enum Leveled<'a> {
     Unknown,
     /// Too many edges would remain.
     Useless,
+    /// It takes more operations than with this share of the budget.
+    TooLong(u64),
     Done(Box<State<'a>>),
 }
 
@@ -99,15 +101,19 @@ impl<'a> ExactRecovery<'a> {
         watch: &Watch,
     ) -> Result<(Complex, ExactSummary), TetError> {
         let none = TetError::NotRecovered { edges: self.start.edges.clone(), triangles: self.start.triangles.clone() };
-        if let Some(share) = way.level {
+        if let Some(part) = way.level {
             let known = match self.level {
                 Leveled::Unknown => false,
-                Leveled::Useless => share.is_finite(),
+                Leveled::Useless => part.is_finite(),
+                Leveled::TooLong(tried) => share <= tried,
                 Leveled::Done(_) => true,
             };
             if !known {
-                let leveled = self.start.leveled(self.edges, share, watch)?;
-                self.level = leveled.map_or(Leveled::Useless, |state| Leveled::Done(Box::new(state)));
+                let leveled = self.start.leveled(self.edges, part, watch);
+                if matches!(leveled, Err(TetError::OverBudget { .. })) {
+                    self.level = Leveled::TooLong(share);
+                }
+                self.level = leveled?.map_or(Leveled::Useless, |state| Leveled::Done(Box::new(state)));
             }
         }
         let state = match (&self.level, way.level) {

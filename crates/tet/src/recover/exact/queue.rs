@@ -27,8 +27,10 @@ const LEVEL_AFTER: u64 = 1;
 const LARGE: usize = 100;
 
 /// Operations for one part in the first round: per missing edge or triangle, plus a constant. Each round doubles them.
-/// Nine in ten parts of the shared surfaces need less than a quarter.
-const PART_OPERATIONS: (u64, u64) = (20_000, 400_000);
+const PART_OPERATIONS: (u64, u64) = (10_000, 200_000);
+
+/// Slots of a complex that are copied in the time of one operation.
+const COPIED: usize = 4;
 
 /// Maximum waiting parts before a strategy is abandoned: a constant, plus this fraction of all parts.
 const MAX_WAITING: (usize, f64) = (16, 0.5);
@@ -96,7 +98,11 @@ impl<'a, 'b> Queue<'a, 'b> {
             }
             waiting = stuck.into_iter().cloned().collect();
             if round == LEVEL_AFTER {
-                waiting = self.level(&waiting)?;
+                let before = (self.push.clone(), self.summary);
+                waiting = self.level(&waiting).map_err(|failed| {
+                    let rest = State::of(before.0, waiting.iter(), before.1);
+                    Failed { rest: Some(Box::new(rest)), ..failed }
+                })?;
             }
         }
         Ok((self.push, self.summary))
@@ -134,16 +140,22 @@ impl<'a, 'b> Queue<'a, 'b> {
             }
             let waiting = MAX_WAITING.0 + (MAX_WAITING.1 * parts.len() as f64) as usize;
             if !failed.again || stuck.len() > waiting {
-                let before =
-                    stuck.iter().copied().filter(|part| !parts[saved.at..].iter().any(|p| std::ptr::eq(p, *part)));
-                let missing = before.chain(&parts[saved.at..]);
-                let rest = State::of(saved.push, missing, saved.summary);
-                return Err(Failed { rest: Some(Box::new(rest)), ..failed });
+                return Err(Self::rest(failed, saved, &stuck, parts));
             }
             last = Some(failed.error);
-            self.backtrack(&mut saved, at + 1, round)?;
+            if let Err(failed) = self.backtrack(&mut saved, at + 1, round) {
+                return Err(Self::rest(failed, saved, &stuck, parts));
+            }
         }
         Ok((stuck, last))
+    }
+
+    /// Failure with the saved state, which lacks the stuck parts before it and all parts after it.
+    fn rest<'p>(failed: Failed<'a>, saved: Saved<'a, 'p>, stuck: &[&'p Part], parts: &'p [Part]) -> Failed<'a> {
+        let after = &parts[saved.at..];
+        let before = stuck.iter().copied().filter(|part| !after.iter().any(|p| std::ptr::eq(p, *part)));
+        let rest = State::of(saved.push, before.chain(after), saved.summary);
+        Failed { rest: Some(Box::new(rest)), ..failed }
     }
 
     /// State before part `at`.
@@ -154,7 +166,7 @@ impl<'a, 'b> Queue<'a, 'b> {
     /// Undoes the last part: restores the saved state and repeats the parts recovered since.
     fn backtrack(&mut self, saved: &mut Saved<'a, '_>, at: usize, round: u64) -> Result<(), Failed<'a>> {
         // The whole complex is copied.
-        let counted = self.watch.spend(saved.push.s.c.slots());
+        let counted = self.watch.spend(saved.push.s.c.slots() / COPIED);
         counted.map_err(|stop| Failed::new(stop.into(), false))?;
         (self.push, self.summary) = (saved.push.clone(), saved.summary);
         let done = std::mem::take(&mut saved.since);
