@@ -1,9 +1,9 @@
 //! Synthetic blocks for tests, and invariants of block meshes.
 
 use super::connector_surface::{ConnectorEnd, ConnectorSurface};
-use super::shape::tet_ratio;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_mesh::quality::tet_ratio;
 use anastomesh_mesh::quality::triangle_min_angle;
 use anastomesh_mesh::{TET_FACES, TetMesh, TriMesh};
 use anastomesh_skeleton::{BranchId, NodeId};

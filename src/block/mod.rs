@@ -41,7 +41,6 @@ pub use free_ends::shared_ends;
 pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};
 pub use record::{Bytes, Record, Sizes, encode};
-pub(crate) use shape::tet_ratio;
 
 #[cfg(all(test, feature = "woven"))]
 pub(crate) use connector_surface::connector_surface;

@@ -1,7 +1,7 @@
 //! Quality measures for building blocks.
 
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::quality::{radius_ratio, triangle_ratio};
+use anastomesh_mesh::quality::triangle_ratio;
 
 /// Cosine of the angle (45°) between normal and outward direction up to which a wall triangle has full quality. Walls
 /// of tapers and bends deviate less, folds more.
@@ -13,9 +13,4 @@ pub(super) fn facing_ratio(p: &[Point3; 3], outward: &Vec3) -> f64 {
     let normal = (p[1] - p[0]).cross(&(p[2] - p[0]));
     let cosine = normal.dot(outward) / (normal.norm() * outward.norm()).max(f64::MIN_POSITIVE);
     triangle_ratio(p) * (cosine / FACING).min(1.0)
-}
-
-/// Radius ratio of a tetrahedron, in [−1, 1]; negative if inverted.
-pub(crate) fn tet_ratio(p: &[Point3; 4]) -> f64 {
-    radius_ratio(&p[0], &p[1], &p[2], &p[3])
 }

@@ -5,11 +5,10 @@
 //! avoids needles in the seam.
 
 use super::region::{OUTSIDE, Region, WALL};
-use crate::block::tet_ratio;
 use anastomesh_mesh::TET_FACES;
 use anastomesh_mesh::geometry::turn;
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
-use anastomesh_mesh::quality::triangle_ratio;
+use anastomesh_mesh::quality::{tet_ratio, triangle_ratio};
 
 /// Passes over the vertices of the end surface.
 const PASSES: usize = 8;

@@ -3,10 +3,10 @@
 use super::fixtures::{lattice_tube, lattice_tubes};
 use super::trim::{TrimOptions, Trimmed, trim};
 use crate::block::fixtures::{assert_mesh, boundary, closed_euler, direction, jitter, neighbours, section};
-use crate::block::{CutEnd, FlattenFailure, tet_ratio};
+use crate::block::{CutEnd, FlattenFailure};
 use crate::partition::CutId;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
-use anastomesh_mesh::quality::triangle_ratio;
+use anastomesh_mesh::quality::{tet_ratio, triangle_ratio};
 
 fn cut_end(cut: u32, side: u8, origin: Point3, axis: Vec3, radius: f64) -> CutEnd {
     CutEnd { cut: CutId(cut), side, section: section(origin, axis, radius) }

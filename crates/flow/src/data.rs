@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::quality::{radius_ratio, triangle_ratio};
+use anastomesh_mesh::quality::{tet_ratio, triangle_ratio};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::flow::{NotConverged, Orders, solve};
 use anastomesh_skeleton::{Adjacency, NodeId, Skeleton, Tubes};
@@ -126,7 +126,7 @@ impl Beside for VesselData {
     }
 
     fn in_tets(&self, column: usize, tets: &[[Point3; 4]]) -> Vec<f64> {
-        self.in_cells(column, tets, |[a, b, c, d]| radius_ratio(a, b, c, d))
+        self.in_cells(column, tets, tet_ratio)
     }
 
     fn in_faces(&self, column: usize, faces: &[[Point3; 3]]) -> Vec<f64> {

@@ -64,6 +64,11 @@ impl<'a> Spokes<'a> {
     }
 }
 
+/// Radius ratio of a tetrahedron by its corners, in [−1, 1]; negative if inverted.
+pub fn tet_ratio([a, b, c, d]: &[Point3; 4]) -> f64 {
+    radius_ratio(a, b, c, d)
+}
+
 /// Radius ratio of a triangle, 2 r / R of incircle and circumcircle, in [0, 1]; 1 if equilateral.
 pub fn triangle_ratio(p: &[Point3; 3]) -> f64 {
     let (a, b, c) = ((p[1] - p[2]).norm(), (p[2] - p[0]).norm(), (p[0] - p[1]).norm());
