@@ -129,6 +129,14 @@ fn a_dropped_vessel_is_no_success_unless_allowed() {
     let allowed = mesh(&network, &out, &["--allow-dropped"]);
     let said = ends(&allowed, FINE, "valid");
     assert!(said.contains("warning: accepted: ") && said.contains(&reason), "{said}");
+    // A tip deep within the other vessel leaves the gap between both.
+    let mut swc = Swc::default();
+    let [_, fork] = swc.line([0.0, 0.0, -60.0], [0.0; 3], 2.0, 1.0, None);
+    swc.line([0.0; 3], [0.0, 0.0, 60.0], 2.0, 1.0, Some(fork));
+    let [_, deep] = swc.line([0.0; 3], [5.5, 0.0, 0.0], 0.25, 1.0, Some(fork));
+    swc.line([6.0, 0.0, -60.0], [6.0, 0.0, 60.0], 2.0, 1.0, None);
+    let said = ends(&mesh(&swc.save(&folder, "deep.swc"), &out, &[]), GATE_NOT_MET, "not faithful: ");
+    assert!(said.contains(&format!(" radii of the vessel of tip {deep} dropped (limit 2)")), "{said}");
     // Refinement moves the vessels apart instead.
     let said = ends(&mesh(&network, &out, &["--refine"]), FINE, "valid");
     assert!(

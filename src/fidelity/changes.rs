@@ -237,8 +237,8 @@ impl<'a> Tips<'a> {
                 } else {
                     inside += length / count as f64;
                 }
-                // The vessel continues within the lumen.
-                if lost >= by || inside > 2.0 * radius {
+                // The vessel continues within the lumen. A tip may lie within another one before.
+                if lost >= by || lost > 0.0 && inside > 2.0 * radius {
                     return in_radii(lost);
                 }
             }
