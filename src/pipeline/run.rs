@@ -60,7 +60,7 @@ pub struct Meshed<M = VolumeMesh> {
 /// let store = Store::in_passing(folder.path())?;
 /// let made = mesh_into(&store, &network, &MeshPlan::default(), &|_| Ok(()), &())?;
 /// assert!(made.check.is_valid());
-/// write_mesh(&folder.path().join("tree.vtu"), &made.whole, &MeshNotes::default())?;
+/// write_mesh(&folder.path().join("tree.vtu"), &made.mesh, &MeshNotes::default())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
