@@ -4,9 +4,11 @@
 usage: foam.py CASE [--compare OTHER_CASE] [--stokes STOKES.json]
 
 Prints, over all results but those of the first half of the time: the inflow, outlet fractions (means over time), and the
-largest difference of P + R Q from the pressure of an outlet with a resistance, relative to the pressure. Fractions are
+largest difference of P + R Q from the mean pressure of an outlet with a resistance, relative to the pressure. Fractions are
 compared with those of another case, and of ../shared/judge/stokes.py."""
 import argparse, json, os, re, struct
+
+import numpy as np
 
 
 def patches(case):
@@ -36,6 +38,29 @@ def boundary(path, names):
     return values
 
 
+def binary_list(data, kind, start):
+    """Values of the list in binary data that begins after a position, and its end."""
+    found = re.compile(rb"(\d+)\s*\(").search(data, start)
+    values = np.frombuffer(data, kind, int(found.group(1)) * (3 if kind == "<f8" else 1), found.end())
+    return values, found.end() + values.nbytes
+
+
+def areas(case, names):
+    """Areas of the faces of patches."""
+    mesh = f"{case}/constant/polyMesh"
+    data = open(f"{mesh}/points", "rb").read()
+    points = binary_list(data, "<f8", data.index(b"}"))[0].reshape(-1, 3)
+    data = open(f"{mesh}/faces", "rb").read()
+    offsets, end = binary_list(data, "<i4", data.index(b"}"))
+    corners, _ = binary_list(data, "<i4", end)
+    text, found = open(f"{mesh}/boundary").read(), {}
+    for name in names:
+        count, start = re.search(rf"\b{name} \{{.*nFaces (\d+); startFace (\d+);", text).groups()
+        faces = [points[corners[offsets[i] : offsets[i + 1]]] for i in range(int(start), int(start) + int(count))]
+        found[name] = np.array([np.linalg.norm(np.cross(f, np.roll(f, -1, 0)).sum(0)) / 2 for f in faces])
+    return found
+
+
 def resistances(case):
     """Pressure and resistance of outlets with a model, by density."""
     line = re.compile(r"^\s*(\S+) \{ \$outletModel; Rp (\S+); Rd (\S+); tau (\S+); P (\S+);", re.M)
@@ -49,13 +74,13 @@ def summary(case):
     outlets = [name for name in names if name.startswith("outlet")]
     models, listed = resistances(case), times(case)
     late = [name for name in listed if float(name) > 0.5001 * float(listed[-1])] or listed[-1:]
-    flows, error = {name: 0.0 for name in names}, None
+    flows, error, area = {name: 0.0 for name in names}, None, areas(case, models)
     for time in late:
         phi, p = boundary(f"{case}/{time}/phi", names), boundary(f"{case}/{time}/p", outlets)
         for name in names:
             flows[name] += sum(phi[name]) / len(late)
         for name, (beyond, resistance) in models.items():
-            pressure = sum(p[name]) / len(p[name])
+            pressure = np.average(np.broadcast_to(p[name], area[name].shape), weights=area[name])
             apart = abs(beyond + resistance * sum(phi[name]) - pressure) / abs(pressure)
             error = max(error or 0.0, apart)
     inflow = -sum(rate for name, rate in flows.items() if name.startswith("inlet"))

@@ -53,9 +53,8 @@ impl Settings {
             true => ["cellLimited Gauss linear 1"; 2],
             false if transient && is_compact => ["Gauss linear", "pointCellsLeastSquares"],
             false if is_compact => ["pointCellsLeastSquares"; 2],
-            false if reynolds > FAST => ["Gauss linear"; 2],
-            false if transient => ["Gauss linear", "Gauss pointLinear"],
-            false => ["Gauss pointLinear"; 2],
+            false if transient || reynolds > FAST => ["Gauss linear"; 2],
+            false => ["Gauss pointLinear", "Gauss linear"],
         };
         // A relaxed momentum equation needs a relaxed pressure: with 0.7 and 1 residuals remain at 0.1.
         let relaxation = if is_skewed || reynolds > FAST { [0.8, 0.8] } else { [0.9, 1.0] };
@@ -95,14 +94,14 @@ impl Settings {
             ["pointCellsLeastSquares", _] => {
                 "// Least squares over all cells at a cell's points: wall cells of tetrahedra have too few face neighbours."
             }
-            ["Gauss linear", "Gauss pointLinear"] => {
-                "// The gradient of the pressure matches its equation, or pressure and velocity oscillate in time. Values at \
-                 points correct\n// the skewness of the faces of long tetrahedra."
-            }
             ["Gauss pointLinear", _] => {
-                "// Least squares are less exact on long tetrahedra. Values at points correct the skewness of their faces."
+                "// Least squares are less exact on long tetrahedra. Values at points correct the skewness of their faces in \
+                 the\n// pressure; in the velocity they make outlet fractions less exact."
             }
-            ["Gauss linear", _] => "// For fast flow through long tetrahedra: other gradients diverge.",
+            ["Gauss linear", _] => {
+                "// For flow in time or fast flow through long tetrahedra: pressure and velocity oscillate or diverge with \
+                 others."
+            }
             _ => "// Limited because of the skewness or non-orthogonality.",
         }
     }
@@ -129,8 +128,8 @@ mod tests {
         let pulsatile = Settings::of(&figures(60.0, 1.0), true, 1.0, false, true);
         assert_eq!(pulsatile.gradients, ["Gauss linear", "pointCellsLeastSquares"]);
         let long = Figures { angles: 40.0, faces: 1, ..figures(79.0, 1.0) };
-        assert_eq!(Settings::of(&long, false, 1.0, false, false).gradients, ["Gauss pointLinear"; 2]);
-        assert_eq!(Settings::of(&long, false, 1.0, false, true).gradients, ["Gauss linear", "Gauss pointLinear"]);
+        assert_eq!(Settings::of(&long, false, 1.0, false, false).gradients, ["Gauss pointLinear", "Gauss linear"]);
+        assert_eq!(Settings::of(&long, false, 1.0, false, true).gradients, ["Gauss linear"; 2]);
         assert_eq!(Settings::of(&long, false, 400.0, false, false).gradients, ["Gauss linear"; 2]);
         assert_eq!(Settings::of(&long, true, 1.0, false, false).gradients, ["pointCellsLeastSquares"; 2]);
         assert_eq!((good.relaxation, good.doubts.len()), ([0.9, 1.0], 0));
