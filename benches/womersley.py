@@ -45,7 +45,7 @@ def make(program, case, rho, layers):
         file.write("time,flow\n")
         for i in range(101):
             t = PERIOD * i / 100
-            file.write(f"{t!r},{RATE * (1 + SWING * np.sin(OMEGA * (t % PERIOD)))!r}\n")
+            file.write(f"{t!r},{float(RATE * (1 + SWING * np.sin(OMEGA * (t % PERIOD))))!r}\n")
     command = [program, "mesh", f"{folder}/tube.swc", "--units", "mm:m", "--rho", str(rho), "-o", case, "-q"]
     command += ["--inflow", f"{folder}/pulse.csv", "--inlet-profile", "womersley", "--periods", "2"]
     subprocess.run(command + (["--layers", str(layers)] if layers else []), check=True)
