@@ -5,7 +5,7 @@ use anastomesh_skeleton::{Branch, EdgeId, NodeId, Skeleton};
 
 /// Minimum cosine between the directions out of a node, at a distance of one radius, for a reversal (60°). Two lines
 /// that meet in their common inlet form one branch with a reversal.
-const TURNS_BACK: f64 = 0.5;
+pub(super) const TURNS_BACK: f64 = 0.5;
 
 /// Line with properties of its nodes.
 pub(super) struct SampledLine {

@@ -3,11 +3,12 @@
 //! VMTK centrelines run from the inlet to each outlet, so the trunk occurs once per outlet; assembled networks have
 //! duplicates, too. Two lines run together while each lies within the radius of the other, with the same direction.
 //! They separate where one leaves the tube of the other. (Antiga, Steinman, 'Robust and objective decomposition and
-//! mapping of bifurcating vessels', IEEE Transactions on Medical Imaging 23, 2004). The longest of them is kept; the
-//! others begin at their separation from it.
+//! mapping of bifurcating vessels', IEEE Transactions on Medical Imaging 23, 2004). The longest of them is kept, but for
+//! lines within wider ones; the others begin at their separation from it.
 
 mod line;
 mod meet;
+mod nested;
 mod runs;
 
 use anastomesh_mesh::geometry::Point3;
@@ -68,13 +69,15 @@ pub(super) fn merge(
     let adjacency = skeleton.adjacency();
     let branches = skeleton.branches(&adjacency);
     let parts: Vec<Vec<SampledLine>> = branches.list.par_iter().map(|b| lines_of(skeleton, b)).collect();
-    let mut lines: Vec<SampledLine> = parts.into_iter().flatten().collect();
+    let lines: Vec<SampledLine> = parts.into_iter().flatten().collect();
+    let nested = nested::nested(skeleton, &lines);
+    let mut order: Vec<usize> = (0..lines.len()).collect();
     // Stable sort: of equal lines the earlier comes first.
-    lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    order.sort_by(|&a, &b| nested[a].cmp(&nested[b]).then(lines[b].length().total_cmp(&lines[a].length())));
     let mut report = MergeReport { lines: lines.len(), met, ..MergeReport::default() };
     let mut kept = KeptLines::new(skeleton, LineGroup::of_edges(skeleton, groups));
     let mut changes = Changes::new(skeleton);
-    for line in &lines {
+    for line in order.into_iter().map(|i| &lines[i]) {
         let feet = kept.feet(line);
         let along = kept.along(line);
         let points: Vec<Point3> = line.nodes.iter().map(|&n| skeleton.node(n).position).collect();
@@ -215,6 +218,22 @@ mod tests {
         let geometry = [lines_left(0.8, &[]), lines_left(0.8, &groups([3, 4], true))];
         assert_eq!(geometry, [1, 1], "within each other, and no group inside a branching");
         assert_eq!(lines_left(0.8, &groups([3, 4], false)), 2);
+    }
+
+    /// The thinnest of concentric vessels is the longest, as it contains an edge that joins them.
+    #[test]
+    fn the_widest_of_concentric_vessels_is_kept() {
+        let mut s = beside(0.01);
+        for (i, node) in s.nodes.iter_mut().enumerate() {
+            node.radius = if i < 30 { 1.0 } else { 3.0 };
+        }
+        for edge in &mut s.edges[29..] {
+            edge.radii = [3.0; 2];
+        }
+        s.edges.push(Edge { nodes: [NodeId(0), NodeId(30)], radii: [3.0; 2] });
+        let (merged, report) = merge(&s, &[]).unwrap();
+        assert!(merged.edges.iter().all(|edge| edge.radii == [3.0; 2]), "{merged:?}");
+        assert_eq!((merged.branches(&merged.adjacency()).list.len(), report.merged.len()), (1, 1));
     }
 
     #[test]

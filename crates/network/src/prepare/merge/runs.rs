@@ -5,7 +5,7 @@ use anastomesh_mesh::geometry::{Aabb, Bvh, DisjointSets, Point3, Vec3, point_seg
 use anastomesh_skeleton::{EdgeId, Kinship, LineGroup, NodeId, Skeleton};
 
 /// Cosine above which vessels have the same direction (45°).
-const SAME_WAY: f64 = 0.707;
+pub(super) const SAME_WAY: f64 = 0.707;
 /// Maximum distance of lines with a common axis, in radii.
 const SAME_AXIS: f64 = 0.1;
 /// Maximum distance of lines in one lumen, in radii, that the file assigns to different vessels.
