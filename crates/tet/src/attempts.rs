@@ -4,7 +4,9 @@ use super::complex::Complex;
 use super::delaunay;
 use super::error::TetError;
 use super::recover::exact::{ExactRecovery, Missing, RecoveryStrategy};
-use super::recover::{self, RecoverySummary, Rule, flat_height, flat_height_in_single, lies_in_planes, lies_turned};
+use super::recover::{
+    self, RecoverySummary, Rule, coarse_height, flat_height, flat_height_in_single, lies_in_planes, lies_turned,
+};
 use super::request::Request;
 use super::sized;
 use anastomesh_mesh::budget::Budget;
@@ -84,9 +86,10 @@ pub(super) fn recover_rest(
     (missing, before_flips): (Missing, &[[u32; 2]]),
 ) -> Result<Recovered, TetError> {
     let flat = flat_height(&r.surface.points);
-    let single = flat_height_in_single(&r.surface.points);
     let edges = missing.edges;
     let turned_within = |height| [edges, before_flips].iter().any(|edges| lies_turned(r.surface, edges, height));
+    let coarse = || Some(coarse_height(&r.surface.points)).filter(|&height| turned_within(height));
+    let single = flat_height_in_single(&r.surface.points).or_else(coarse);
     let edges_turned = turned_within(flat) || single.is_some_and(turned_within);
     let is_turned = edges_turned || lies_in_planes(r.surface, edges, flat) || has_flat(&complex, flat, edges.len());
     let turned = single.filter(|&height| turned_within(height)).or(is_turned.then_some(flat));

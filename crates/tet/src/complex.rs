@@ -4,11 +4,14 @@
 //! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], lie on the outer side of every boundary face, so
 //! that each half-face has a mate. Around a hull or a carved domain, ghosts are connected across the boundary's edges.
 
+mod undo;
+
 use anastomesh_mesh::adjacency::tet_adjacency;
 pub(crate) use anastomesh_mesh::face_key;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{TET_FACES, TetMesh};
+use undo::UndoLog;
 
 /// Vertex at infinity, last vertex of every ghost tetrahedron.
 pub const GHOST: u32 = u32::MAX;
@@ -97,6 +100,7 @@ pub struct Complex {
     free: Vec<u32>,
     vertex_tet: Vec<u32>,
     scratch: ReplaceScratch,
+    log: UndoLog,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -136,7 +140,7 @@ impl Complex {
     /// slots `free` hold no tetrahedra.
     pub(super) fn from_cells(points: Vec<Point3>, cells: Vec<Cell>, free: Vec<u32>, vertex_tet: Vec<u32>) -> Self {
         let frozen = vec![0; cells.len()];
-        let mut c = Self { points, cells, frozen, vertex_tet, free, scratch: ReplaceScratch::default() };
+        let mut c = Self { points, cells, frozen, vertex_tet, free, ..Self::default() };
         for k in 0..c.free.len() {
             c.cells[c.free[k] as usize].verts = [DEAD; 4];
         }
@@ -391,6 +395,7 @@ impl Complex {
     pub fn freeze(&mut self, half: u32) {
         let mate = self.mate(half);
         for h in [half, mate] {
+            self.note_slot(h >> 2);
             self.frozen[(h >> 2) as usize] |= 1 << (h & 3);
         }
     }
@@ -399,6 +404,7 @@ impl Complex {
     pub fn thaw(&mut self, half: u32) {
         let mate = self.mate(half);
         for h in [half, mate] {
+            self.note_slot(h >> 2);
             self.frozen[(h >> 2) as usize] &= !(1 << (h & 3));
         }
     }
@@ -414,11 +420,13 @@ impl Complex {
     pub fn add_point(&mut self, p: Point3) -> u32 {
         self.points.push(p);
         self.vertex_tet.push(NONE);
+        self.note_point_added();
         self.points.len() as u32 - 1
     }
 
     /// Removes the last point, which no tetrahedron may use.
     pub(super) fn pop_point(&mut self) {
+        self.note_point_removed();
         self.points.pop();
         self.vertex_tet.pop();
     }
@@ -427,12 +435,15 @@ impl Complex {
     #[inline]
     pub fn alloc(&mut self, v: [u32; 4]) -> u32 {
         let t = if let Some(t) = self.free.pop() {
+            self.note_taken(t);
+            self.note_slot(t);
             self.cells[t as usize] = Cell { verts: v, mates: [NONE; 4] };
             self.frozen[t as usize] = 0;
             t
         } else {
             self.cells.push(Cell { verts: v, mates: [NONE; 4] });
             self.frozen.push(0);
+            self.note_slot_added();
             self.cells.len() as u32 - 1
         };
         self.set_vertex_tets(t);
@@ -443,6 +454,7 @@ impl Complex {
     fn set_vertex_tets(&mut self, t: u32) {
         for v in self.cells[t as usize].verts {
             if v != GHOST {
+                self.note_vertex(v);
                 self.vertex_tet[v as usize] = t;
             }
         }
@@ -451,6 +463,8 @@ impl Complex {
     /// Deletes a tetrahedron. Its mates keep pointing at it until they are connected again.
     #[inline]
     pub fn free(&mut self, t: u32) {
+        self.note_slot(t);
+        self.note_freed();
         self.cells[t as usize].verts = [DEAD; 4];
         self.free.push(t);
     }
@@ -458,6 +472,8 @@ impl Complex {
     /// Makes two half-faces mates.
     #[inline]
     pub fn glue(&mut self, a: u32, b: u32) {
+        self.note_slot(a >> 2);
+        self.note_slot(b >> 2);
         self.cells[(a >> 2) as usize].mates[(a & 3) as usize] = b;
         self.cells[(b >> 2) as usize].mates[(b & 3) as usize] = a;
     }
@@ -513,6 +529,7 @@ impl Complex {
         for &t in old {
             for v in self.verts(t) {
                 if v != GHOST {
+                    self.note_vertex(v);
                     self.vertex_tet[v as usize] = NONE;
                 }
             }

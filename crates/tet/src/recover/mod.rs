@@ -32,7 +32,7 @@ use cavity::Cavity;
 use journal::Journal;
 use march::{Crossing, crossings, piercing_edges};
 pub(super) use removal::remove_steiner_points;
-pub(super) use rule::{Rule, flat_height, flat_height_in_single};
+pub(super) use rule::{Rule, coarse_height, flat_height, flat_height_in_single};
 use rustc_hash::FxHashMap;
 pub(super) use turned::{lies_in_planes, lies_turned};
 

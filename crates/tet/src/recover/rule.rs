@@ -37,7 +37,12 @@ pub(crate) fn flat_height(points: &[Point3]) -> f64 {
 /// Thickness below which a part counts as flat, if all coordinates have single precision.
 pub(crate) fn flat_height_in_single(points: &[Point3]) -> Option<f64> {
     let single = points.iter().flat_map(|p| p.iter()).all(|&x| f64::from(x as f32) == x);
-    single.then(|| SINGLE_UNITS * f64::from(f32::EPSILON) * largest(points))
+    single.then(|| coarse_height(points))
+}
+
+/// Thickness of flat parts that had single precision, or few decimals, before they were turned.
+pub(crate) fn coarse_height(points: &[Point3]) -> f64 {
+    SINGLE_UNITS * f64::from(f32::EPSILON) * largest(points)
 }
 
 fn largest(points: &[Point3]) -> f64 {

@@ -130,9 +130,9 @@ impl<'a> ExactRecovery<'a> {
             Ok((push, summary)) => {
                 Ok((push.s.c, ExactSummary { steiner_points: made + summary.steiner_points, ..summary }))
             }
-            Err(Failed { error, rest, .. }) => {
+            Err(Failed { error, rest }) => {
                 let before = state.edges.len() + state.triangles.len();
-                if let Some(rest) = rest.filter(|rest| rest.edges.len() + rest.triangles.len() < before) {
+                if rest.edges.len() + rest.triangles.len() < before {
                     self.start = State { made: made + rest.made, ..*rest };
                     self.level = Leveled::Unknown;
                 }

@@ -9,7 +9,7 @@ use super::looks::{Looks, PlacementMethod};
 use super::parts::sides;
 use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
-use super::space::Space;
+use super::space::{self, Space};
 use super::ways::OPERATIONS;
 use super::wider::Wider;
 use crate::error::{Obstacle, Stuck, TetError};
@@ -52,6 +52,13 @@ enum Pushed {
     Not {
         room: f64,
     },
+}
+
+/// State to which [`Push::undo`] returns.
+pub(super) struct Mark {
+    space: space::Mark,
+    triangles: usize,
+    free: Vec<u32>,
 }
 
 #[derive(Clone)]
@@ -173,10 +180,36 @@ impl<'a> Push<'a> {
     pub(super) fn finish(&mut self) -> usize {
         self.looks.forget();
         self.relax(0.0);
+        self.forget_part();
+        std::mem::take(&mut self.free).len()
+    }
+
+    /// Forgets what belongs to a part alone. Its segments are edges of the complex now, or still missing.
+    fn forget_part(&mut self) {
+        self.left.clear();
         self.pieces.clear();
         self.around.clear();
         self.looks.forget();
-        std::mem::take(&mut self.free).len()
+        self.segments.clear();
+    }
+
+    /// Records all changes until [`Push::keep`] or [`Push::undo`].
+    pub(super) fn record(&mut self) -> Mark {
+        Mark { space: self.s.record(), triangles: self.triangles.len(), free: self.free.clone() }
+    }
+
+    /// Keeps the recorded changes. Returns their number.
+    pub(super) fn keep(&mut self) -> usize {
+        self.s.keep()
+    }
+
+    /// Takes back the recorded changes. Returns their number.
+    pub(super) fn undo(&mut self, mark: Mark) -> usize {
+        let changes = self.s.undo(mark.space);
+        self.triangles.truncate(mark.triangles);
+        self.free = mark.free;
+        self.forget_part();
+        changes
     }
 
     /// Pushes off all vertices that have clearance, level by level.
@@ -279,7 +312,7 @@ impl<'a> Push<'a> {
             }
             let here = kernel.depth(&Vec3::zeros()) / kernel.size;
             if let Ok(p) = kernel.place(&self.s, 1.2 * here) {
-                self.s.c.points[v as usize] = p;
+                self.s.c.move_point(v, p);
                 self.looks.change(faces.iter().flatten().copied());
             }
             true

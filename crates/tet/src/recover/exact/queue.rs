@@ -12,7 +12,7 @@ use crate::input::SurfaceEdges;
 use crate::progress::Watch;
 use crate::recover::flat::dissolve_flat;
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::budget::Budget;
+use anastomesh_mesh::budget::{Budget, Stop};
 
 /// Maximum rounds over the waiting parts.
 const MAX_PASSES: u64 = 3;
@@ -23,14 +23,11 @@ const MAX_PASSES_LARGE: u64 = 2;
 /// Round after which the remaining edges are tried in planes of facets.
 const LEVEL_AFTER: u64 = 1;
 
-/// Minimum missing edges of a large part. Also the number of recovered edges after which the state is saved.
+/// Minimum missing edges of a large part.
 const LARGE: usize = 100;
 
 /// Operations for one part in the first round: per missing edge or triangle, plus a constant. Each round doubles them.
 const PART_OPERATIONS: (u64, u64) = (10_000, 200_000);
-
-/// Slots of a complex that are copied in the time of one operation.
-const COPIED: usize = 4;
 
 /// Maximum waiting parts before a strategy is abandoned: a constant, plus this fraction of all parts.
 const MAX_WAITING: (usize, f64) = (16, 0.5);
@@ -38,16 +35,26 @@ const MAX_WAITING: (usize, f64) = (16, 0.5);
 /// Failed recovery.
 pub(super) struct Failed<'a> {
     pub error: TetError,
-    /// True if another attempt may succeed.
-    pub again: bool,
     /// State with the parts recovered so far, and the parts still missing.
-    pub rest: Option<Box<State<'a>>>,
+    pub rest: Box<State<'a>>,
 }
 
-impl Failed<'_> {
-    fn new(error: TetError, again: bool) -> Self {
-        Self { error, again, rest: None }
-    }
+/// Result of one round over the parts.
+struct Pass<'p> {
+    /// Parts still missing.
+    stuck: Vec<&'p Part>,
+    /// Last failure of a part.
+    last: Option<TetError>,
+    /// Reason to end the strategy.
+    end: Option<TetError>,
+}
+
+/// Result for one part, with the reason to end early.
+enum Tried {
+    Recovered(Option<Stop>),
+    /// Another attempt may succeed.
+    Waits(TetError, Option<Stop>),
+    Fails(TetError),
 }
 
 /// Recovers parts with one strategy.
@@ -62,16 +69,6 @@ pub(super) struct Queue<'a, 'b> {
     /// Operations for each part, relative to [`PART_OPERATIONS`].
     share: u64,
     watch: &'b Watch<'b>,
-}
-
-/// State to return to when a part fails.
-struct Saved<'a, 'p> {
-    push: Push<'a>,
-    summary: ExactSummary,
-    /// Number of parts tried before.
-    at: usize,
-    /// Parts recovered since the state was saved.
-    since: Vec<&'p Part>,
 }
 
 impl<'a, 'b> Queue<'a, 'b> {
@@ -89,19 +86,24 @@ impl<'a, 'b> Queue<'a, 'b> {
         let mut waiting = parts(&self.surface.triangles, missing);
         for round in 0..MAX_PASSES {
             self.push.segments.deep = self.way.deep != (round % 2 == 1);
-            let (stuck, last) = self.pass(&waiting, round)?;
-            let Some(error) = last else { return Ok((self.push, self.summary)) };
+            let Pass { stuck, last, end } = self.pass(&waiting, round);
             let large = stuck.iter().any(|part| part.edges.len() >= LARGE);
-            if round + 1 == if large { MAX_PASSES_LARGE } else { MAX_PASSES } {
+            let is_last = round + 1 == if large { MAX_PASSES_LARGE } else { MAX_PASSES };
+            let error = match (end, last) {
+                (None, None) => return Ok((self.push, self.summary)),
+                (None, Some(error)) if is_last => Some(error),
+                (end, _) => end,
+            };
+            if let Some(error) = error {
                 let rest = State::of(self.push, stuck.into_iter(), self.summary);
-                return Err(Failed { error, again: true, rest: Some(Box::new(rest)) });
+                return Err(Failed { error, rest: Box::new(rest) });
             }
             waiting = stuck.into_iter().cloned().collect();
             if round == LEVEL_AFTER {
                 let before = (self.push.clone(), self.summary);
-                waiting = self.level(&waiting).map_err(|failed| {
+                waiting = self.level(&waiting).map_err(|error| {
                     let rest = State::of(before.0, waiting.iter(), before.1);
-                    Failed { rest: Some(Box::new(rest)), ..failed }
+                    Failed { error, rest: Box::new(rest) }
                 })?;
             }
         }
@@ -109,93 +111,67 @@ impl<'a, 'b> Queue<'a, 'b> {
     }
 
     /// Recovers remaining edges in planes of facets, after dissolving flat tetrahedra. Returns the parts still missing.
-    fn level(&mut self, waiting: &[Part]) -> Result<Vec<Part>, Failed<'a>> {
+    fn level(&mut self, waiting: &[Part]) -> Result<Vec<Part>, TetError> {
         let edges: Vec<[u32; 2]> = waiting.iter().flat_map(|part| &part.edges).copied().collect();
         let triangles: Vec<u32> = waiting.iter().flat_map(|part| &part.triangles).copied().collect();
         let missing = Missing { edges: &edges, triangles: &triangles };
         let flat = self.push.s.flat;
         dissolve_flat(&mut self.push.s.c, self.surface, self.edges, flat);
-        let left = level_out(&mut self.push, self.edges, missing, f64::INFINITY, self.watch);
-        let Some((edges, triangles)) = left.map_err(|error| Failed::new(error, false))? else {
+        let left = level_out(&mut self.push, self.edges, missing, f64::INFINITY, self.watch)?;
+        let Some((edges, triangles)) = left else {
             return Ok(waiting.to_vec());
         };
         Ok(parts(&self.surface.triangles, Missing { edges: &edges, triangles: &triangles }))
     }
 
-    /// Tries each part once. Returns the failed parts and the last error.
-    fn pass<'p>(&mut self, parts: &'p [Part], round: u64) -> Result<(Vec<&'p Part>, Option<TetError>), Failed<'a>> {
-        let mut saved = self.save(0);
+    /// Tries each part once.
+    fn pass<'p>(&mut self, parts: &'p [Part], round: u64) -> Pass<'p> {
+        let waiting = MAX_WAITING.0 + (MAX_WAITING.1 * parts.len() as f64) as usize;
         let (mut stuck, mut last) = (Vec::new(), None);
         for (at, part) in parts.iter().enumerate() {
-            let since: usize = saved.since.iter().map(|part| 1 + part.edges.len()).sum();
-            if since > 0 && since + part.edges.len() >= LARGE {
-                saved = self.save(at);
-            }
-            let Err(failed) = self.recover(part, round) else {
-                saved.since.push(part);
-                continue;
+            let (recovered, end) = match self.recover(part, round) {
+                Tried::Recovered(end) => (true, end.map(TetError::from)),
+                Tried::Waits(error, end) => {
+                    stuck.push(part);
+                    let full = (stuck.len() > waiting).then(|| error.clone());
+                    last = Some(error);
+                    (true, end.map(TetError::from).or(full))
+                }
+                Tried::Fails(error) => (false, Some(error)),
             };
-            if failed.again {
-                stuck.push(part);
-            }
-            let waiting = MAX_WAITING.0 + (MAX_WAITING.1 * parts.len() as f64) as usize;
-            if !failed.again || stuck.len() > waiting {
-                return Err(Self::rest(failed, saved, &stuck, parts));
-            }
-            last = Some(failed.error);
-            if let Err(failed) = self.backtrack(&mut saved, at + 1, round) {
-                return Err(Self::rest(failed, saved, &stuck, parts));
+            if end.is_some() {
+                stuck.extend(&parts[at + usize::from(recovered)..]);
+                return Pass { stuck, last, end };
             }
         }
-        Ok((stuck, last))
+        Pass { stuck, last, end: None }
     }
 
-    /// Failure with the saved state, which lacks the stuck parts before it and all parts after it.
-    fn rest<'p>(failed: Failed<'a>, saved: Saved<'a, 'p>, stuck: &[&'p Part], parts: &'p [Part]) -> Failed<'a> {
-        let after = &parts[saved.at..];
-        let before = stuck.iter().copied().filter(|part| !after.iter().any(|p| std::ptr::eq(p, *part)));
-        let rest = State::of(saved.push, before.chain(after), saved.summary);
-        Failed { rest: Some(Box::new(rest)), ..failed }
-    }
-
-    /// State before part `at`.
-    fn save<'p>(&self, at: usize) -> Saved<'a, 'p> {
-        Saved { push: self.push.clone(), summary: self.summary, since: Vec::new(), at }
-    }
-
-    /// Undoes the last part: restores the saved state and repeats the parts recovered since.
-    fn backtrack(&mut self, saved: &mut Saved<'a, '_>, at: usize, round: u64) -> Result<(), Failed<'a>> {
-        // The whole complex is copied.
-        let counted = self.watch.spend(saved.push.s.c.slots() / COPIED);
-        counted.map_err(|stop| Failed::new(stop.into(), false))?;
-        (self.push, self.summary) = (saved.push.clone(), saved.summary);
-        let done = std::mem::take(&mut saved.since);
-        for part in &done {
-            self.recover(part, round)?;
-        }
-        if !done.is_empty() {
-            *saved = self.save(at);
-        }
-        Ok(())
-    }
-
-    fn recover(&mut self, part: &Part, round: u64) -> Result<(), Failed<'a>> {
+    /// Tries a part. After a failure, the complex is as before.
+    fn recover(&mut self, part: &Part, round: u64) -> Tried {
         let salt = self.way.salt + round;
         let size = (part.edges.len() + part.triangles.len()) as u64;
         let limit = Budget::new((self.share * (PART_OPERATIONS.0 * size + PART_OPERATIONS.1)) << round);
         let watch = self.watch.within(&limit);
+        let (mark, summary) = (self.push.record(), self.summary);
         let done = recover_part(&mut self.push, part, salt, &mut self.summary, self.budget, &watch);
-        self.watch.spend(limit.spent() as usize).map_err(|stop| Failed::new(stop.into(), false))?;
-        done.map_err(|error| match error {
+        if done.is_ok() {
+            self.push.keep();
+        } else {
+            self.push.undo(mark);
+            self.summary = summary;
+        }
+        let end = self.watch.spend(limit.spent() as usize).err();
+        match done {
+            Ok(()) => Tried::Recovered(end),
             // Few parts need much more than the others. After these, less is in the way.
-            TetError::OverBudget { .. } => Failed::new(out_of_budget(part, &self.push.triangles), true),
-            error => {
-                let error = about_input(error, self.surface, part);
+            Err(TetError::OverBudget { .. }) => Tried::Waits(out_of_budget(part, &self.push.triangles), end),
+            Err(error) => match about_input(error, self.surface, part) {
                 // The surface does not intersect itself, so the obstacle may be gone at the next attempt.
-                let again = matches!(error, TetError::Stuck { reason, .. } if reason != Stuck::Budget);
-                Failed::new(error, again)
-            }
-        })
+                error @ TetError::Stuck { reason, .. } if reason != Stuck::Budget => Tried::Waits(error, end),
+                error => Tried::Fails(error),
+            },
+        }
     }
 }
 

@@ -76,6 +76,13 @@ impl<'a> Segments<'a> {
         chain
     }
 
+    /// Forgets all segments.
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+        self.by_ends.clear();
+        self.pieces.clear();
+    }
+
     /// Directed sides of a facet, or the pieces of their chains, with the facet to the left.
     pub(super) fn outline(&self, [a, b, c]: [u32; 3]) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();

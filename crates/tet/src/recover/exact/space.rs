@@ -22,12 +22,42 @@ pub(super) struct Space {
     place: Vec<u32>,
     created: Vec<u32>,
     star: Star,
+    /// Former definitions of points moved since [`Space::record`].
+    moved: Vec<(usize, OnTriangle)>,
+}
+
+/// State to which [`Space::undo`] returns.
+pub(super) struct Mark {
+    points: usize,
+    implicit: usize,
 }
 
 impl Space {
     pub(super) fn new(c: Complex, flat: f64) -> Self {
         let place = vec![NONE; c.points.len()];
-        Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default() }
+        Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default(), moved: Vec::new() }
+    }
+
+    /// Records all changes until [`Space::keep`] or [`Space::undo`].
+    pub(super) fn record(&mut self) -> Mark {
+        self.c.record();
+        self.moved.clear();
+        Mark { points: self.place.len(), implicit: self.on.len() }
+    }
+
+    /// Keeps the recorded changes. Returns their number.
+    pub(super) fn keep(&mut self) -> usize {
+        self.c.keep_changes()
+    }
+
+    /// Takes back the recorded changes. Returns their number.
+    pub(super) fn undo(&mut self, mark: Mark) -> usize {
+        for (place, on) in self.moved.drain(..).rev() {
+            self.on[place] = on;
+        }
+        self.on.truncate(mark.implicit);
+        self.place.truncate(mark.points);
+        self.c.undo_changes()
     }
 
     /// Tetrahedra at a vertex.
@@ -134,8 +164,8 @@ impl Space {
             return false;
         }
         let place = self.place[v as usize] as usize;
-        self.on[place] = on;
-        self.c.points[v as usize] = at;
+        self.moved.push((place, std::mem::replace(&mut self.on[place], on)));
+        self.c.move_point(v, at);
         true
     }
 
