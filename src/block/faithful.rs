@@ -8,7 +8,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Tube, crossing, place_key};
-use anastomesh_skeleton::{CrotchRule, Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
+use anastomesh_skeleton::{CrotchRule, CrotchSearch, Edge, LocalDistances, Node, NodeId, Overlap, Skeleton};
 use anastomesh_tet::parts::{Counter, Watch};
 use rustc_hash::FxHashMap;
 
@@ -105,12 +105,13 @@ fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Poi
         })
     };
     let mut walls = WallSearch { wall, searched: 0, tree: None };
+    let mut crotches = CrotchSearch::default();
     for o in &overlaps.pairs {
         watch.spend(PER_PAIR)?;
         if is_far(&o) {
             watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
             let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR };
-            if !walls.is_parted(&o.points[0], &o.points[1]) && !skeleton.is_in_crotch(&adjacency, o, rule) {
+            if !walls.is_parted(&o.points[0], &o.points[1]) && !crotches.is_in_crotch(&skeleton, &adjacency, o, rule) {
                 return Ok(Some(o.points));
             }
         }

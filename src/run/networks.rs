@@ -5,7 +5,7 @@ use anastomesh_io::network::NodeNames;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_network::{Island, PrepareReport, TouchedBy, TouchingTip, take_back};
 use anastomesh_network::{RefineReport, Refined};
-use anastomesh_skeleton::{CrotchRule, EdgeId, LocalDistances, NodeId, Overlap, Skeleton, clean};
+use anastomesh_skeleton::{CrotchRule, CrotchSearch, EdgeId, LocalDistances, NodeId, Overlap, Skeleton, clean};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
@@ -160,7 +160,8 @@ impl Networks {
             })
         };
         let overlaps = network.overlaps(&adjacency).pairs;
-        let in_crotch = |o: &Overlap| network.is_in_crotch(&adjacency, o, CrotchRule::default());
+        let mut crotches = CrotchSearch::default();
+        let mut in_crotch = |o: &Overlap| crotches.is_in_crotch(network, &adjacency, o, CrotchRule::default());
         let deep = overlaps.iter().filter(|o| o.distance < HOPELESS * o.radii && !at_tip(o));
         deep.take(SEARCHED).any(|o| is_far(o) && !in_crotch(o))
     }

@@ -37,58 +37,7 @@ impl Skeleton {
     /// True if an overlap lies in the crotch of a bifurcation, or at most a certain length beyond its end. The two vessels then
     /// overlap at all pairs of places between there and their bifurcation.
     pub fn is_in_crotch(&self, adjacency: &Adjacency, overlap: &Overlap, rule: CrotchRule) -> bool {
-        let Some(path) = self.path(adjacency, overlap) else { return false };
-        path.closes(rule, rule.beyond * overlap.radii)
-    }
-
-    /// Shortest path along the vessels between the two places of an overlap; `None` if it is long.
-    fn path(&self, adjacency: &Adjacency, overlap: &Overlap) -> Option<Path> {
-        let [first, second] = overlap.edges;
-        let [p, q] = overlap.points;
-        if first == second {
-            return None;
-        }
-        let limit = REACH * overlap.radii;
-        let at = |n: NodeId| self.node(n).position;
-        let mut found: FxHashMap<NodeId, Option<EdgeId>> = FxHashMap::default();
-        let mut heap: BinaryHeap<Reverse<(Total, NodeId, Option<EdgeId>)>> = BinaryHeap::new();
-        heap.extend(overlap.nodes[0].map(|n| Reverse((Total((at(n) - p).norm()), n, None))));
-        let mut best: Option<(f64, NodeId)> = None;
-        while let Some(Reverse((Total(distance), node, by))) = heap.pop() {
-            if distance > limit || best.is_some_and(|(length, _)| distance >= length) || found.len() > MOST_NODES {
-                break;
-            }
-            if found.contains_key(&node) {
-                continue;
-            }
-            found.insert(node, by);
-            if overlap.nodes[1].contains(&node) {
-                let length = distance + (at(node) - q).norm();
-                if best.is_none_or(|(b, _)| length < b) {
-                    best = Some((length, node));
-                }
-            }
-            for &edge in adjacency.edges(node).iter().filter(|&&e| e != first && e != second) {
-                let next = self.edge(edge).other(node);
-                if !found.contains_key(&next) {
-                    heap.push(Reverse((Total(distance + self.length(edge)), next, Some(edge))));
-                }
-            }
-        }
-        let (length, mut node) = best.filter(|(length, _)| *length <= limit)?;
-        // From the second place back to the first.
-        let mut path = Path { tubes: Vec::new(), arc: vec![0.0], bifurcations: Vec::new(), length };
-        path.push(self.piece(second, &q, node, true));
-        loop {
-            if adjacency.valence(node) > 2 {
-                path.bifurcations.push(path.end());
-            }
-            let Some(edge) = found[&node] else { break };
-            path.push(self.oriented(edge, node));
-            node = self.edge(edge).other(node);
-        }
-        path.push(self.piece(first, &p, node, false));
-        Some(path)
+        CrotchSearch::default().is_in_crotch(self, adjacency, overlap, rule)
     }
 
     /// Tube of an edge, from one of its nodes.
@@ -108,6 +57,123 @@ impl Skeleton {
         } else {
             Tube { a: tube.a, b: *place, ra: tube.ra, rb: radius }
         }
+    }
+}
+
+/// Search for crotches in one skeleton. Successive overlaps of one edge share the search for their paths, which takes most of
+/// the time in tangled networks: overlaps are best in ascending order.
+#[derive(Debug, Default)]
+pub struct CrotchSearch {
+    /// First edge of the last overlap.
+    from: Option<EdgeId>,
+    /// Paths from its ends.
+    paths: [ShortestPaths; 2],
+}
+
+impl CrotchSearch {
+    /// See [`Skeleton::is_in_crotch`]. All calls must have the same skeleton.
+    pub fn is_in_crotch(
+        &mut self,
+        skeleton: &Skeleton,
+        adjacency: &Adjacency,
+        overlap: &Overlap,
+        rule: CrotchRule,
+    ) -> bool {
+        let Some(path) = self.path(skeleton, adjacency, overlap) else { return false };
+        path.closes(rule, rule.beyond * overlap.radii)
+    }
+
+    /// Shortest path along the vessels between the two places of an overlap; `None` if it is long.
+    fn path(&mut self, skeleton: &Skeleton, adjacency: &Adjacency, overlap: &Overlap) -> Option<Path> {
+        let [first, second] = overlap.edges;
+        let [p, q] = overlap.points;
+        if first == second {
+            return None;
+        }
+        if self.from != Some(first) {
+            self.from = Some(first);
+            self.paths.iter_mut().zip(overlap.nodes[0]).for_each(|(paths, node)| paths.restart(node));
+        }
+        let at = |n: NodeId| skeleton.node(n).position;
+        let mut limit = REACH * overlap.radii;
+        let mut best: Option<(usize, NodeId)> = None;
+        for (i, paths) in self.paths.iter_mut().enumerate() {
+            let start = (at(overlap.nodes[0][i]) - p).norm();
+            for node in overlap.nodes[1] {
+                let rest = start + (at(node) - q).norm();
+                let Some(length) = paths.to(skeleton, adjacency, node, [first, second], limit - rest) else { continue };
+                if best.is_none() || rest + length < limit {
+                    (limit, best) = (rest + length, Some((i, node)));
+                }
+            }
+        }
+        let (start, mut node) = best?;
+        // From the second place back to the first.
+        let mut path = Path { tubes: Vec::new(), arc: vec![0.0], bifurcations: Vec::new(), length: limit };
+        path.push(skeleton.piece(second, &q, node, true));
+        loop {
+            if adjacency.valence(node) > 2 {
+                path.bifurcations.push(path.end());
+            }
+            let Some(edge) = self.paths[start].before(node) else { break };
+            path.push(skeleton.oriented(edge, node));
+            node = skeleton.edge(edge).other(node);
+        }
+        path.push(skeleton.piece(first, &p, node, false));
+        Some(path)
+    }
+}
+
+/// Shortest paths from a node (Dijkstra's algorithm), found as far as they are asked for.
+#[derive(Debug, Default)]
+struct ShortestPaths {
+    /// Length of the path to a node, and its last edge.
+    found: FxHashMap<NodeId, (f64, Option<EdgeId>)>,
+    /// Nearest first.
+    heap: BinaryHeap<Reverse<(Total, NodeId, Option<EdgeId>)>>,
+}
+
+impl ShortestPaths {
+    fn restart(&mut self, start: NodeId) {
+        self.found.clear();
+        self.heap.clear();
+        self.heap.push(Reverse((Total(0.0), start, None)));
+    }
+
+    /// Last edge of the path to a node; `None` at its start.
+    fn before(&self, node: NodeId) -> Option<EdgeId> {
+        self.found.get(&node).and_then(|&(_, by)| by)
+    }
+
+    /// Length of the path to an end of the second edge, which does not lead through either edge. `None` if it is longer than the
+    /// limit.
+    fn to(
+        &mut self,
+        skeleton: &Skeleton,
+        adjacency: &Adjacency,
+        node: NodeId,
+        [first, second]: [EdgeId; 2],
+        limit: f64,
+    ) -> Option<f64> {
+        while !self.found.contains_key(&node) && self.found.len() <= MOST_NODES {
+            let &Reverse((Total(distance), next, by)) = self.heap.peek()?;
+            if distance > limit {
+                return None;
+            }
+            self.heap.pop();
+            if self.found.contains_key(&next) {
+                continue;
+            }
+            self.found.insert(next, (distance, by));
+            for &edge in adjacency.edges(next).iter().filter(|&&edge| edge != first) {
+                let beyond = skeleton.edge(edge).other(next);
+                if !self.found.contains_key(&beyond) {
+                    self.heap.push(Reverse((Total(distance + skeleton.length(edge)), beyond, Some(edge))));
+                }
+            }
+        }
+        let &(length, by) = self.found.get(&node)?;
+        (length <= limit && by != Some(second)).then_some(length)
     }
 }
 

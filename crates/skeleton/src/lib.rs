@@ -52,7 +52,7 @@ mod walk;
 
 pub use branch::{Branch, Branches, Place};
 pub use clean::{CleanReport, clean};
-pub use crotch::CrotchRule;
+pub use crotch::{CrotchRule, CrotchSearch};
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};

@@ -1,6 +1,6 @@
 //! Overlaps that a refinement resolves.
 
-use anastomesh_skeleton::{Adjacency, CrotchRule, EdgeId, Overlap, Overlaps, Skeleton};
+use anastomesh_skeleton::{Adjacency, CrotchRule, CrotchSearch, EdgeId, Overlap, Overlaps, Skeleton};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -33,6 +33,10 @@ fn widened(skeleton: &Skeleton, factor: f64) -> Cow<'_, Skeleton> {
 /// Overlaps of a widened network that lie in a crotch, or those that do not.
 fn by_crotch(wide: &Skeleton, adjacency: &Adjacency, found: &Overlaps, factor: f64, inside: bool) -> Vec<Overlap> {
     let rule = CrotchRule { narrower: 1.0 / factor, ..CrotchRule::default() };
-    let is_kept = |pair: &&Overlap| wide.is_in_crotch(adjacency, pair, rule) == inside;
-    found.pairs.par_iter().with_min_len(16).filter(is_kept).copied().collect()
+    let by_edge = found.pairs.par_chunk_by(|p, q| p.edges[0] == q.edges[0]);
+    let of_edge = |search: &mut CrotchSearch, pairs: &[Overlap]| -> Vec<Overlap> {
+        pairs.iter().filter(|pair| search.is_in_crotch(wide, adjacency, pair, rule) == inside).copied().collect()
+    };
+    let kept: Vec<Vec<Overlap>> = by_edge.map_init(CrotchSearch::default, of_edge).collect();
+    kept.concat()
 }
