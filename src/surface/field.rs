@@ -24,6 +24,12 @@ const LONGEST_CHORD: f64 = 2.0;
 const MOST_MERGED: usize = 64;
 /// Pieces of the field that one point visits in the time of an operation of the budget.
 const PIECES_PER_OPERATION: u64 = 8;
+/// Sums of kernels on an axis between which the tubes get smaller weights, and the sum that remains above the second one. Two
+/// tubes that cross have the sum 2; a bifurcation has 1.5, and its wall the right radius.
+const CROWDED: [f64; 2] = [2.0, 3.0];
+const UNCROWDED: f64 = 1.5;
+/// Maximum distance from a crowded end of a tube, in radii, at which it has full weight.
+const FADE: f64 = 2.0;
 /// Bits per coordinate of a search cell's key.
 const KEY_BITS: u32 = 21;
 
@@ -36,6 +42,15 @@ struct TaperedSegment {
     ra: f64,
     slope: f64,
     reach: f64,
+    /// Lengths over which the weight rises to 1 from the ends, and what it lacks there; `None` if it is 1 everywhere.
+    fade: Option<[Fade; 2]>,
+}
+
+/// Weight of a tube near one of its ends.
+#[derive(Clone, Copy, Debug)]
+struct Fade {
+    over: f64,
+    lacks: f64,
 }
 
 /// Distance form of the convolution field: below 1 inside the vessels, 1 on the wall, above 1 outside.
@@ -88,7 +103,32 @@ impl Field {
             return Err(SurfaceError::Empty);
         }
         let locator = (pieces.len() > FEW).then(|| Locator::new(&pieces));
-        Ok(Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator, visited: 0 })
+        let mut field = Self { pieces, kappa, cutoff2, far: cutoff2.sqrt(), erf: Table::get(), locator, visited: 0 };
+        field.thin_out();
+        Ok(field)
+    }
+
+    /// Reduces the weights of tubes where many of them share a place, as the vessels of a star do: the sum of their kernels
+    /// would make a far wider lumen than each of them.
+    fn thin_out(&mut self) {
+        if self.pieces.len() <= FEW {
+            return;
+        }
+        let ends: Vec<[Point3; 2]> = self.pieces.iter().map(|p| [p.a, p.a + p.axis * p.length]).collect();
+        let lacks = ends.iter().map(|ends| ends.map(|end| 1.0 - weight(self.sum(&end)))).collect::<Vec<_>>();
+        for (piece, lacks) in self.pieces.iter_mut().zip(lacks).filter(|(_, lacks)| *lacks != [0.0; 2]) {
+            let radii = [piece.ra, piece.ra + piece.slope * piece.length];
+            let fade = |i: usize| Fade { over: piece.length.min(FADE * radii[i]), lacks: lacks[i] };
+            piece.fade = Some([fade(0), fade(1)]);
+        }
+    }
+
+    /// Sum of the kernels at `p`.
+    fn sum(&mut self, p: &Point3) -> f64 {
+        let mut sum = 0.0;
+        let add = |piece: &TaperedSegment| sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
+        self.visited += each_near(&mut self.locator, &self.pieces, p, add);
+        sum
     }
 
     /// Kernel width.
@@ -116,9 +156,7 @@ impl Field {
 
     /// Distance form at `p`.
     pub fn value(&mut self, p: &Point3) -> f64 {
-        let mut sum = 0.0;
-        let add = |piece: &TaperedSegment| sum += piece.value(p, self.kappa, self.cutoff2, self.erf);
-        self.visited += each_near(&mut self.locator, &self.pieces, p, add);
+        let sum = self.sum(p);
         self.distance(sum)
     }
 
@@ -167,6 +205,16 @@ impl Field {
             (-2.0 * self.kappa * self.kappa * sum.ln()).sqrt().min(self.far)
         }
     }
+}
+
+/// Weight of a tube at a point of its axis with this sum of kernels.
+fn weight(sum: f64) -> f64 {
+    let [low, high] = CROWDED;
+    if sum <= low {
+        return 1.0;
+    }
+    let share = ((sum - low) / (high - low)).min(1.0);
+    (low + (UNCROWDED - low) * share) / sum
 }
 
 /// Visits the pieces that count near a point, in order. Returns the number of pieces visited or sorted into lists.
@@ -238,7 +286,21 @@ impl TaperedSegment {
             ra: t.ra,
             slope: (t.rb - t.ra) / length,
             reach: t.max_radius() * reach,
+            fade: None,
         })
+    }
+
+    /// Weight at an axial position, and its derivative.
+    #[inline]
+    fn weight(&self, s: f64) -> (f64, f64) {
+        let Some([start, end]) = &self.fade else { return (1.0, 0.0) };
+        let near = |fade: &Fade, at: f64| {
+            let share = 1.0 - at.clamp(0.0, fade.over) / fade.over;
+            let slope = if at > 0.0 && at < fade.over { fade.lacks / fade.over } else { 0.0 };
+            (fade.lacks * share, slope)
+        };
+        let [(a, up), (b, down)] = [near(start, s), near(end, self.length - s)];
+        (1.0 - a - b, up - down)
     }
 
     /// Offset from the start, axial position, squared distance from the axis, and radius; `None` out of reach.
@@ -258,7 +320,8 @@ impl TaperedSegment {
     fn value(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> f64 {
         let Some((_, s, d2, r)) = self.locate(p, cutoff2) else { return 0.0 };
         let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
-        (-d2 * q * q).exp() * 0.5 * (table.erf((self.length - s) * q) + table.erf(s * q))
+        let value = (-d2 * q * q).exp() * 0.5 * (table.erf((self.length - s) * q) + table.erf(s * q));
+        self.weight(s).0 * value
     }
 
     #[inline]
@@ -274,7 +337,9 @@ impl TaperedSegment {
         let along_slope = 0.5 * q * (m0 * (1.0 - s * growth) - m1 * (1.0 + (self.length - s) * growth));
         let axial = across * (2.0 * d2 * q * q * growth * along + along_slope);
         let radial = -2.0 * q * q * across * along;
-        Some((across * along, (w - self.axis * s) * radial + self.axis * axial))
+        let (value, gradient) = (across * along, (w - self.axis * s) * radial + self.axis * axial);
+        let (weight, growth) = self.weight(s);
+        Some((weight * value, gradient * weight + self.axis * (growth * value)))
     }
 
     /// Kernel value at the distance from the axis segment, and the radius there.

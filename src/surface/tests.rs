@@ -193,6 +193,49 @@ fn gradients_are_those_of_the_values() {
     }
 }
 
+/// Twelve cones that leave one point in the directions of an icosahedron, as the branches of a neuron do.
+fn star() -> Vec<Tube> {
+    let golden = 0.5 * (1.0 + 5f64.sqrt());
+    let signs = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
+    let corners = signs.iter().flat_map(|&(s, t)| {
+        let (a, b) = (s, t * golden);
+        [Vec3::new(0.0, a, b), Vec3::new(a, b, 0.0), Vec3::new(b, 0.0, a)]
+    });
+    corners.map(|corner| Tube { a: Point3::origin(), b: (corner.normalize() * 9.0).into(), ra: 8.0, rb: 1.5 }).collect()
+}
+
+#[test]
+fn a_star_is_as_wide_as_its_vessels() {
+    let mut field = Field::new(&star(), 0.33).unwrap();
+    for way in [Vec3::x(), Vec3::new(1.0, 1.0, 1.0).normalize(), Vec3::new(1.0, 0.2, 0.1).normalize()] {
+        let mut range = [0.0, 30.0];
+        for _ in 0..50 {
+            let middle = 0.5 * (range[0] + range[1]);
+            range[usize::from(field.value(&(way * middle).into()) >= 1.0)] = middle;
+        }
+        assert!((range[0] / 8.0 - 1.0).abs() < 0.06, "{way} {range:?}");
+    }
+}
+
+#[test]
+fn gradients_in_a_star_are_those_of_the_values() {
+    let mut field = Field::new(&star(), 0.33).unwrap();
+    for i in 0..60 {
+        let t = f64::from(i);
+        let p = Point3::new((0.7 * t).sin(), (1.1 * t).cos(), (0.3 * t).sin()) * (4.0 + 0.07 * t);
+        let (value, gradient) = field.value_and_gradient(&p);
+        if value > 0.3 && value < 1.5 {
+            let h = 1e-4;
+            let numeric = Vec3::from_fn(|k, _| {
+                let mut e = Vec3::zeros();
+                e[k] = h;
+                (field.value(&(p + e)) - field.value(&(p - e))) / (2.0 * h)
+            });
+            assert!((numeric - gradient).norm() < 1e-2 * gradient.norm() + 1e-4, "{numeric} {gradient}");
+        }
+    }
+}
+
 #[test]
 fn scale_and_place_do_not_matter() {
     let t = tube([0.1, 0.2, 0.3], [9.0, 3.0, 2.0], 1.0, 1.2);
