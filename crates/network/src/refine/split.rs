@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 /// Maximum halvings of the shift if an edge would become too short.
 const HALVINGS: u32 = 8;
-/// Shift of a node, in its radii, if vessels are not to be moved apart. A smaller one gives tubes that are shorter than the
-/// contour resolves.
+/// Sum of the shifts at a node, in its radii, if vessels are not to be moved apart. A smaller one gives tubes of bifurcations that
+/// are shorter than the contour resolves; a larger one widens the lumen at nodes of many vessels.
 const IN_PLACE: f64 = 0.1;
 
 /// Node that was split, with the nodes and edges made of it.
@@ -39,21 +39,22 @@ pub struct SplitReport {
 ///
 /// The skeleton must satisfy `Skeleton::check`, as does the result.
 pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
-    split_by(skeleton, 1.0)
+    split_by(skeleton, false)
 }
 
-/// Splits every node of more than three edges like [`split`], with shifts of at most a tenth of a radius. Vessels keep their
+/// Splits every node of more than three edges like [`split`], with shifts whose sum is at most a tenth of a radius. Vessels keep their
 /// places, and those that leave one node remain close to each other.
 pub fn split_in_place(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
-    split_by(skeleton, IN_PLACE)
+    split_by(skeleton, true)
 }
 
-/// Splits nodes with shifts of at most `reach` radii.
-fn split_by(skeleton: &Skeleton, reach: f64) -> (Skeleton, SplitReport) {
+/// Splits nodes, in place or with shifts of up to a radius.
+fn split_by(skeleton: &Skeleton, in_place: bool) -> (Skeleton, SplitReport) {
     let adjacency = skeleton.adjacency();
     let mut out = skeleton.clone();
     let mut report = SplitReport::default();
     for node in skeleton.node_ids().filter(|&n| adjacency.valence(n) > 3) {
+        let reach = if in_place { IN_PLACE / (adjacency.valence(node) - 3) as f64 } else { 1.0 };
         report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec(), reach));
     }
     (out, report)
@@ -217,6 +218,18 @@ mod tests {
         check(&s, &after, &report);
         for edge in s.edge_ids() {
             assert!(after.length(edge) >= 0.5 * s.length(edge).min(1.0) - 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_star_is_split_in_its_place() {
+        let ends: Vec<[f64; 3]> = (0..12).map(f64::from).map(|a| [9.0 * a.cos(), 9.0 * a.sin(), a - 6.0]).collect();
+        let s = star(&ends, &[1.0; 12]);
+        let (after, report) = split_in_place(&s);
+        check(&s, &after, &report);
+        assert_eq!(report.nodes[0].made.len(), 9);
+        for node in after.nodes.iter().filter(|node| node.original == 0) {
+            assert!(node.position.coords.norm() < 1.01 * IN_PLACE, "{}", node.position);
         }
     }
 
