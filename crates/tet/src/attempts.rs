@@ -16,7 +16,7 @@ use anastomesh_mesh::geometry::Point3;
 const OPERATIONS: (u64, u64) = (7_500, 2_500_000);
 
 /// Factor of the budget for recovery in planes after few flips.
-const PLANE_SHARE: u64 = 8;
+const PLANE_SHARE: u64 = 2;
 
 /// Factor of the budget for strategies that recover edges in planes first. These take most of the time there, and pay off.
 const LEVEL_SHARE: u64 = 4;
@@ -31,10 +31,19 @@ const GROWTH: u64 = 4;
 const FURTHER: [u64; 3] = [1, 4, 16];
 
 /// Maximum parts that count as few: a constant, or this fraction of the parts that flips left.
-const FEW: (usize, f64) = (8, 0.002);
+const FEW: (usize, f64) = (8, 0.05);
 
 /// Strategies are not repeated if they leave more than this fraction of the parts.
 const STALLED: f64 = 0.9;
+
+/// A strategy that leaves more than this fraction of the parts helps little.
+const POOR: f64 = 0.75;
+
+/// Consecutive strategies that help little, after which the next start is tried.
+const MAX_POOR: u32 = 2;
+
+/// Budget, relative to the first round, from which all strategies are tried whatever the gain.
+const THOROUGH: u64 = 64;
 
 /// Maximum operations of all rounds: per triangle of the surface, plus a constant.
 const MAX_OPERATIONS: (u64, u64) = (100_000, 2_000_000_000);
@@ -51,6 +60,8 @@ struct Attempt<'a> {
     /// True if the Delaunay complex gets points on both sides of the surface. Long edges then cross few tetrahedra, and the
     /// points are removed like other Steiner points.
     filled: bool,
+    /// True if strategies have helped little.
+    abandoned: bool,
     /// Complex, missing edges and triangles, and summary before any strategy.
     origin: Option<Origin>,
 }
@@ -99,11 +110,19 @@ pub(super) fn recover_rest(
     let plane = |height| Attempt { passes: Some(1), ..Attempt::thick(height, &RecoveryStrategy::PLANES) };
     let filled = |flat, ways| Attempt { filled: true, ..Attempt::fresh(flat, ways) };
     // Where rounding has turned planes, flips that make nothing flat leave less.
-    let mut attempts: Vec<Attempt> = turned.map(thick).into_iter().collect();
-    let place = if edges_turned { attempts.len() } else { 0 };
-    attempts.insert(place, Attempt::given(r, points.len(), complex, missing, flat));
-    attempts.push(filled(None, &RecoveryStrategy::GIVEN));
-    attempts.extend(turned.map(|height| filled(Some(height), &RecoveryStrategy::TURNED)));
+    let given = Attempt::given(r, points.len(), complex, missing, flat);
+    let filled_thick = turned.map(|height| filled(Some(height), &RecoveryStrategy::TURNED));
+    let filled = filled(None, &RecoveryStrategy::GIVEN);
+    let mut attempts: Vec<Attempt> = Vec::new();
+    if edges_turned {
+        attempts.extend(turned.map(thick).into_iter().chain(filled_thick));
+        attempts.extend([given, filled]);
+    } else {
+        attempts.push(given);
+        attempts.extend(turned.map(thick));
+        attempts.push(filled);
+        attempts.extend(filled_thick);
+    }
     attempts.extend(turned.map(plane));
     let others = [Some(flat), single].into_iter().flatten().filter(|&thickness| turned != Some(thickness));
     attempts.extend(others.map(thick));
@@ -112,7 +131,8 @@ pub(super) fn recover_rest(
     let mut effort = Effort { left: whole, last };
     for round in 0..MAX_ROUNDS {
         for attempt in &mut attempts {
-            if round > 0 {
+            // Parts that are recovered may be in the way of others.
+            if round > 0 && round % 2 == 0 {
                 attempt.reset(r);
             }
             if let Some(done) = attempt.escalate(r, points, GROWTH.pow(round), &mut effort)? {
@@ -150,6 +170,7 @@ impl<'a> Attempt<'a> {
             summary,
             passes: None,
             filled: false,
+            abandoned: false,
             origin: Some(origin),
         }
     }
@@ -162,10 +183,10 @@ impl<'a> Attempt<'a> {
     /// Starts with the Delaunay complex.
     fn fresh(flat: Option<f64>, ways: &'static [RecoveryStrategy]) -> Self {
         let summary = RecoverySummary::default();
-        Self { flat, ways, recovery: None, summary, passes: None, filled: false, origin: None }
+        Self { flat, ways, recovery: None, summary, passes: None, filled: false, abandoned: false, origin: None }
     }
 
-    /// Returns to the complex left by flips. Parts that are recovered may be in the way of others.
+    /// Returns to the complex left by flips.
     fn reset(&mut self, r: &Request<'a>) {
         if let Some(Origin { complex, edges, triangles, summary }) = self.origin.clone() {
             let missing = Missing { edges: &edges, triangles: &triangles };
@@ -212,7 +233,7 @@ impl<'a> Attempt<'a> {
         Ok(None)
     }
 
-    /// Repeats all strategies while one recovers something.
+    /// Repeats all strategies while they recover enough.
     fn repeat(
         &mut self,
         r: &Request<'a>,
@@ -223,13 +244,13 @@ impl<'a> Attempt<'a> {
         loop {
             let before = self.missing();
             let done = self.run(r, points, share, effort)?;
-            if done.is_some() || effort.left == 0 || self.has_stalled(before) {
+            if done.is_some() || effort.left == 0 || self.abandoned || self.has_stalled(before) {
                 return Ok(done);
             }
         }
     }
 
-    /// Tries all strategies, each with `share` times the operations of the first round.
+    /// Tries all strategies, each with `share` times the operations of the first round. Stops after some that help little.
     fn run(
         &mut self,
         r: &Request<'a>,
@@ -243,6 +264,8 @@ impl<'a> Attempt<'a> {
             return Ok(Some(done));
         }
         let share = if self.passes.is_some() { PLANE_SHARE * share } else { share };
+        let mut poor = 0;
+        self.abandoned = false;
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
@@ -265,6 +288,15 @@ impl<'a> Attempt<'a> {
                 && let Some(done) = self.flip_again(r)?
             {
                 return Ok(Some(done));
+            }
+            if self.missing() as f64 <= POOR * before as f64 {
+                poor = 0;
+            } else if budget.spent() > 0 {
+                poor += 1;
+            }
+            self.abandoned = poor == MAX_POOR && share < THOROUGH;
+            if self.abandoned {
+                break;
             }
         }
         Ok(None)

@@ -36,6 +36,11 @@ impl<'a> Watch<'a> {
         Watch { budget: Some(budget), ..*self }
     }
 
+    /// Operations that the budget leaves.
+    pub fn left(&self) -> u64 {
+        self.budget.map_or(u64::MAX, Budget::left)
+    }
+
     /// Reports, then checks for cancellation.
     ///
     /// # Errors

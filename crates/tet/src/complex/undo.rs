@@ -172,7 +172,7 @@ mod tests {
             c.pop_point();
             let faces: Vec<[u32; 4]> = (0..4).map(|i| c.face(4 * t + i)).map(|[a, b, d]| [a, d, b, new]).collect();
             assert!(c.replace(&[t], &faces, &mut made));
-            c.move_point(new, Point3::from(p.coords * 1.001));
+            c.move_point(new, p + (c.points[v[0] as usize] - p) * 0.1);
             c.sanity_check().unwrap();
             assert!(content(&c) != before);
             if round == 2 {

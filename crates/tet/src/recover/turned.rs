@@ -41,6 +41,7 @@ fn is_mostly_flat(surface: &TriMesh, edges: &[[u32; 2]], height: f64, wanted: im
 
 #[cfg(test)]
 mod tests {
+    use super::super::rule::{coarse_height, flat_height};
     use super::*;
     use anastomesh_mesh::geometry::Point3;
 
@@ -49,6 +50,23 @@ mod tests {
         let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, height]];
         let points = points.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
         TriMesh { points, triangles: vec![[0, 2, 1], [1, 3, 0]] }
+    }
+
+    #[test]
+    fn a_plate_of_single_precision_is_flat_after_a_rotation_in_doubles() {
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, 1.1);
+        let tilted = |x: f64, y: f64| Point3::new(x, y, f64::from((0.3 * x + 0.7 * y) as f32));
+        let mut plate = TriMesh::default();
+        let mut edges = Vec::new();
+        for i in 0..20 {
+            let (x, v) = (0.1 * f64::from(i), 4 * i);
+            let corners = [(x, 0.0), (x + 0.1, 0.0), (x + 0.1, 0.13), (x, 0.13)];
+            plate.points.extend(corners.map(|(x, y)| turn * tilted(f64::from(x as f32), f64::from(y as f32))));
+            plate.triangles.extend([[v, v + 1, v + 2], [v, v + 2, v + 3]]);
+            edges.push([v, v + 2]);
+        }
+        assert!(!lies_turned(&plate, &edges, flat_height(&plate.points)));
+        assert!(lies_turned(&plate, &edges, coarse_height(&plate.points)));
     }
 
     #[test]

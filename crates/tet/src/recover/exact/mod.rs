@@ -50,6 +50,8 @@ pub(crate) struct ExactRecovery<'a> {
     edges: &'a SurfaceEdges,
     start: State<'a>,
     level: Leveled<'a>,
+    /// Strategies that have recovered nothing in the present state, with the largest budget of each.
+    futile: Vec<(RecoveryStrategy, u64)>,
 }
 
 /// State after recovery in planes.
@@ -75,7 +77,7 @@ impl<'a> ExactRecovery<'a> {
         let segments = Segments::new(edges, surface.points.len());
         let push = Push::new(Space::new(c, flat), segments, surface.triangles.clone());
         let start = State { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec(), made: 0 };
-        Self { surface, edges, start, level: Leveled::Unknown }
+        Self { surface, edges, start, level: Leveled::Unknown, futile: Vec::new() }
     }
 
     /// Number of missing edges and triangles.
@@ -86,6 +88,13 @@ impl<'a> ExactRecovery<'a> {
     /// Complex with the parts recovered so far, and the number of Steiner points made.
     pub(crate) fn into_complex(self) -> (Complex, usize) {
         (self.start.push.s.c, self.start.made)
+    }
+
+    /// True if a strategy cannot recover anything, as an earlier attempt has shown. It would repeat the same work.
+    fn is_futile(&self, way: RecoveryStrategy, share: u64) -> bool {
+        // Strategies differ in the treatment of edges.
+        let alike = |other: RecoveryStrategy| other == way || self.start.edges.is_empty();
+        self.futile.iter().any(|&(other, tried)| share <= tried && alike(other))
     }
 
     /// Tries one strategy. Each part may take `share` times the usual operations. After a failure, the parts that it
@@ -101,6 +110,9 @@ impl<'a> ExactRecovery<'a> {
         watch: &Watch,
     ) -> Result<(Complex, ExactSummary), TetError> {
         let none = TetError::NotRecovered { edges: self.start.edges.clone(), triangles: self.start.triangles.clone() };
+        if self.is_futile(way, share) {
+            return Err(none);
+        }
         if let Some(part) = way.level {
             let known = match self.level {
                 Leveled::Unknown => false,
@@ -130,11 +142,14 @@ impl<'a> ExactRecovery<'a> {
             Ok((push, summary)) => {
                 Ok((push.s.c, ExactSummary { steiner_points: made + summary.steiner_points, ..summary }))
             }
-            Err(Failed { error, rest }) => {
+            Err(Failed { error, limited, rest }) => {
                 let before = state.edges.len() + state.triangles.len();
                 if rest.edges.len() + rest.triangles.len() < before {
                     self.start = State { made: made + rest.made, ..*rest };
                     self.level = Leveled::Unknown;
+                    self.futile.clear();
+                } else {
+                    self.futile.push((way, if limited { share } else { u64::MAX }));
                 }
                 Err(error)
             }

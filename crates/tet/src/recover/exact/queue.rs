@@ -35,6 +35,8 @@ const MAX_WAITING: (usize, f64) = (16, 0.5);
 /// Failed recovery.
 pub(super) struct Failed<'a> {
     pub error: TetError,
+    /// True if a larger budget may recover more.
+    pub limited: bool,
     /// State with the parts recovered so far, and the parts still missing.
     pub rest: Box<State<'a>>,
 }
@@ -69,6 +71,8 @@ pub(super) struct Queue<'a, 'b> {
     /// Operations for each part, relative to [`PART_OPERATIONS`].
     share: u64,
     watch: &'b Watch<'b>,
+    /// True if a part has exceeded its budget.
+    limited: bool,
 }
 
 impl<'a, 'b> Queue<'a, 'b> {
@@ -78,7 +82,7 @@ impl<'a, 'b> Queue<'a, 'b> {
         (way, budget, share): (RecoveryStrategy, usize, u64),
         watch: &'b Watch<'b>,
     ) -> Self {
-        Self { push, summary: ExactSummary::default(), surface, edges, way, budget, share, watch }
+        Self { push, summary: ExactSummary::default(), surface, edges, way, budget, share, watch, limited: false }
     }
 
     /// Recovers all missing parts.
@@ -96,14 +100,15 @@ impl<'a, 'b> Queue<'a, 'b> {
             };
             if let Some(error) = error {
                 let rest = State::of(self.push, stuck.into_iter(), self.summary);
-                return Err(Failed { error, rest: Box::new(rest) });
+                let limited = self.limited || matches!(error, TetError::OverBudget { .. });
+                return Err(Failed { error, limited, rest: Box::new(rest) });
             }
             waiting = stuck.into_iter().cloned().collect();
             if round == LEVEL_AFTER {
                 let before = (self.push.clone(), self.summary);
                 waiting = self.level(&waiting).map_err(|error| {
                     let rest = State::of(before.0, waiting.iter(), before.1);
-                    Failed { error, rest: Box::new(rest) }
+                    Failed { error, limited: true, rest: Box::new(rest) }
                 })?;
             }
         }
@@ -151,7 +156,8 @@ impl<'a, 'b> Queue<'a, 'b> {
     fn recover(&mut self, part: &Part, round: u64) -> Tried {
         let salt = self.way.salt + round;
         let size = (part.edges.len() + part.triangles.len()) as u64;
-        let limit = Budget::new((self.share * (PART_OPERATIONS.0 * size + PART_OPERATIONS.1)) << round);
+        let own = (self.share * (PART_OPERATIONS.0 * size + PART_OPERATIONS.1)) << round;
+        let limit = Budget::new(own.min(self.watch.left()));
         let watch = self.watch.within(&limit);
         let (mark, summary) = (self.push.record(), self.summary);
         let done = recover_part(&mut self.push, part, salt, &mut self.summary, self.budget, &watch);
@@ -165,7 +171,10 @@ impl<'a, 'b> Queue<'a, 'b> {
         match done {
             Ok(()) => Tried::Recovered(end),
             // Few parts need much more than the others. After these, less is in the way.
-            Err(TetError::OverBudget { .. }) => Tried::Waits(out_of_budget(part, &self.push.triangles), end),
+            Err(TetError::OverBudget { .. }) => {
+                self.limited = true;
+                Tried::Waits(out_of_budget(part, &self.push.triangles), end)
+            }
             Err(error) => match about_input(error, self.surface, part) {
                 // The surface does not intersect itself, so the obstacle may be gone at the next attempt.
                 error @ TetError::Stuck { reason, .. } if reason != Stuck::Budget => Tried::Waits(error, end),

@@ -7,6 +7,7 @@ use crate::recover::flat_height;
 use crate::survey::survey;
 use crate::{carve, certify, conform};
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::Vec3;
 use proptest::prelude::*;
@@ -144,6 +145,71 @@ fn thin_sheets_with_unlike_sides_are_filled() {
         }
     }
     fills_all(&sheet(4, 1e-3, 1e6, 1));
+}
+
+/// Copies of a surface in a row.
+fn row(of: &TriMesh, count: u32) -> TriMesh {
+    let mut s = TriMesh::default();
+    for k in 0..count {
+        let first = s.points.len() as u32;
+        s.points.extend(of.points.iter().map(|p| p + Vec3::new(5.0 * f64::from(k), 0.0, 0.0)));
+        s.triangles.extend(of.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    s
+}
+
+#[test]
+fn what_is_recovered_before_a_budget_ends_is_kept() {
+    let surface = row(&twisted_prism(3, -0.5, 1.0), 12);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    let mut c = delaunay(&points).unwrap();
+    let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
+    let start = |c: Complex| {
+        let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+        ExactRecovery::new(c, (&surface, &edges), missing, flat_height(&surface.points))
+    };
+    let way = RecoveryStrategy::GIVEN[0];
+    let whole = Budget::new(u64::MAX);
+    let mut recovery = start(c.clone());
+    let before = recovery.missing();
+    recovery.attempt(way, 100, &Watch::NOBODY.within(&whole)).unwrap();
+    let mut missing = Vec::new();
+    for share in [0.0, 0.3, 0.7] {
+        let budget = Budget::new((share * whole.spent() as f64) as u64);
+        let mut recovery = start(c.clone());
+        let error = recovery.attempt(way, 100, &Watch::NOBODY.within(&budget)).unwrap_err();
+        assert!(matches!(error, TetError::OverBudget { .. }), "{error}");
+        missing.push(recovery.missing());
+        let (mut complex, _) = recovery.into_complex();
+        complex.sanity_check().unwrap();
+        let (edges, triangles) = survey(&mut complex, &surface, &edges);
+        assert_eq!(missing.last(), Some(&(edges.len() + triangles.len())));
+    }
+    assert_eq!(missing[0], before);
+    assert!(missing[1] < before * 9 / 10 && missing[2] < before / 2 && missing[2] > 0, "{missing:?} of {before}");
+}
+
+#[test]
+fn an_attempt_that_recovered_nothing_is_not_repeated() {
+    let surface = twisted_prism(5, 0.3, 1.0);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    let mut c = delaunay(&points).unwrap();
+    let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let mut recovery = ExactRecovery::new(c, (&surface, &edges), missing, flat_height(&surface.points));
+    let way = RecoveryStrategy::GIVEN[0];
+    let mut spent = |share: u64, limit: u64| {
+        let budget = Budget::new(limit);
+        recovery.attempt(way, share, &Watch::NOBODY.within(&budget)).unwrap_err();
+        budget.spent()
+    };
+    assert!(spent(4, 100) > 0);
+    assert_eq!((spent(4, 100), spent(1, 100)), (0, 0));
+    assert!(spent(16, 100) > 0);
 }
 
 #[test]

@@ -13,7 +13,7 @@ const VERTICES_DEEP: (usize, usize) = (64, 100_000);
 const WORTHWHILE: f64 = 0.2;
 
 /// A recovery strategy.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RecoveryStrategy {
     /// If set, edges in facet planes are recovered first; the strategy stops if more than this fraction remains.
     pub level: Option<f64>,
