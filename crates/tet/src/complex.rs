@@ -140,7 +140,7 @@ impl Complex {
     /// slots `free` hold no tetrahedra.
     pub(super) fn from_cells(points: Vec<Point3>, cells: Vec<Cell>, free: Vec<u32>, vertex_tet: Vec<u32>) -> Self {
         let frozen = vec![0; cells.len()];
-        let mut c = Self { points, cells, frozen, vertex_tet, free, ..Self::default() };
+        let mut c = Self { points, cells, frozen, free, vertex_tet, ..Self::default() };
         for k in 0..c.free.len() {
             c.cells[c.free[k] as usize].verts = [DEAD; 4];
         }

@@ -205,7 +205,7 @@ impl<'a> Push<'a> {
 
     /// Takes back the recorded changes. Returns their number.
     pub(super) fn undo(&mut self, mark: Mark) -> usize {
-        let changes = self.s.undo(mark.space);
+        let changes = self.s.undo(&mark.space);
         self.triangles.truncate(mark.triangles);
         self.free = mark.free;
         self.forget_part();

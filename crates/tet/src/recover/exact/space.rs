@@ -51,7 +51,7 @@ impl Space {
     }
 
     /// Takes back the recorded changes. Returns their number.
-    pub(super) fn undo(&mut self, mark: Mark) -> usize {
+    pub(super) fn undo(&mut self, mark: &Mark) -> usize {
         for (place, on) in self.moved.drain(..).rev() {
             self.on[place] = on;
         }
