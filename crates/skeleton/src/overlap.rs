@@ -136,7 +136,7 @@ impl Skeleton {
         for &second in &scratch.close {
             let ends = self.edge(second).nodes;
             let way = scratch.ways.each_ref().map(|ways| ends.map(|n| ways.of(n)));
-            if let Some((s, t)) = deepest_apart(&tube, &self.tube(second), way, 1.0) {
+            if let Some((s, t)) = deepest_apart(&tube, &self.tube(second), way, [[1.0; 2]; 2]) {
                 found.pairs.push(self.overlap([first, second], s, t));
             }
         }
@@ -182,10 +182,11 @@ fn tube_box(tube: &Tube) -> Aabb {
 
 /// Deepest overlap of two tubes among points not close along the skeleton; `None` without overlap.
 ///
-/// They overlap if their distance is below `clearance` times the sum of their radii. `way[i][j]` is the distance along
+/// They overlap if their distance is below the sum of their radii, multiplied by the factors in `clearance` at the ends of
+/// `a` and of `b`. `way[i][j]` is the distance along
 /// the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of four pairs of ends. So "more
 /// than 6 r apart" is a set of linear conditions. The admissible set is a convex polygon, and the gap is convex on it.
-pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> Option<(f64, f64)> {
+pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: [[f64; 2]; 2]) -> Option<(f64, f64)> {
     let conditions = apart_conditions(a, b, way);
     let polygon = clip_square(&conditions)?;
     let (mut low, mut high) = (1.0_f64, 0.0_f64);
@@ -193,8 +194,8 @@ pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: f64) -> 
         low = low.min(corner[0]);
         high = high.max(corner[0]);
     }
-    let wide = |tube: &Tube| Tube { ra: clearance * tube.ra, rb: clearance * tube.rb, ..*tube };
-    let (a, b) = (&wide(a), &wide(b));
+    let wide = |tube: &Tube, by: [f64; 2]| Tube { ra: by[0] * tube.ra, rb: by[1] * tube.rb, ..*tube };
+    let (a, b) = (&wide(a, clearance[0]), &wide(b, clearance[1]));
     let at = |s: f64| {
         let range = t_range(&polygon, s);
         let t = point_tube(&a.point(s), b).0.clamp(range.0, range.1);

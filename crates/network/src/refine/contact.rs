@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::overlapping::in_crotches;
 use super::push::{Push, project};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
-use anastomesh_skeleton::{EdgeId, JOINED, LocalDistances, NodeId, deepest_apart};
+use anastomesh_skeleton::{Adjacency, EdgeId, JOINED, LocalDistances, NodeId, Skeleton, deepest_apart};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -35,6 +35,23 @@ pub(super) struct Contacts {
     forks: Vec<(NodeId, [EdgeId; 2])>,
     /// Smaller clearances of some pairs, whose edges are in ascending order.
     pub smaller: FxHashMap<[EdgeId; 2], f64>,
+    /// Smaller clearances of terminals that are close to others.
+    tips: FxHashMap<NodeId, f64>,
+}
+
+/// Clearances of fixed terminals that are closer to others than vessels are to be, but do not overlap. Vessels that run there
+/// side by side would be pushed apart without end.
+pub(super) fn tip_clearances(skeleton: &Skeleton, adjacency: &Adjacency, clearance: f64) -> FxHashMap<NodeId, f64> {
+    let mut wide = skeleton.clone();
+    wide.nodes.iter_mut().for_each(|node| node.radius *= clearance);
+    let mut tips = FxHashMap::default();
+    for pair in wide.crowded_terminals(adjacency) {
+        let own = clearance * pair.distance / pair.radii;
+        for node in pair.nodes.into_iter().filter(|_| own >= 1.0) {
+            tips.entry(node).and_modify(|least: &mut f64| *least = least.min(own)).or_insert(own);
+        }
+    }
+    tips
 }
 
 /// Bounding box of all points within `clearance` radii of a tube's axis.
@@ -73,7 +90,8 @@ impl Contacts {
             .collect();
         let crotches = if measured { in_crotches(s, &frame.adjacency, clearance) } else { Vec::new() };
         let crotches: FxHashSet<[EdgeId; 2]> = crotches.into_iter().collect();
-        let mut contacts = Self::default();
+        let tips = if measured { tip_clearances(s, &frame.adjacency, clearance) } else { FxHashMap::default() };
+        let mut contacts = Self { tips, ..Self::default() };
         for (pairs, ways) in found {
             let shift = contacts.ways.len() as u32;
             contacts.ways.extend(ways);
@@ -126,23 +144,40 @@ impl Contacts {
         }
     }
 
+    /// Clearances at the ends of two edges.
+    fn at_ends(&self, frame: &Frame, edges: [EdgeId; 2], usual: f64) -> [[f64; 2]; 2] {
+        let own = |n: NodeId| self.tips.get(&n).map_or(usual, |c| c.min(usual));
+        if self.tips.is_empty() { [[usual; 2]; 2] } else { edges.map(|e| frame.skeleton.edge(e).nodes.map(own)) }
+    }
+
     fn push_apart(&self, frame: &Frame, pair: &Pair, clearance: f64, out: &mut Vec<Push>) {
         let [a, b] = pair.edges.map(|e| frame.skeleton.tube(e));
         let axes = segment_segment([&a.a, &a.b], [&b.a, &b.b]);
         if axes.distance >= clearance * (a.max_radius() + b.max_radius()) {
             return;
         }
+        let ends = self.at_ends(frame, pair.edges, clearance);
         let place = if let Some(&ways) = self.ways.get(pair.ways as usize) {
-            deepest_apart(&a, &b, ways, clearance)
+            deepest_apart(&a, &b, ways, ends)
         } else {
-            let wide = |t: &Tube| Tube { ra: clearance * t.ra, rb: clearance * t.rb, ..*t };
-            let near = tube_tube(&wide(&a), &wide(&b));
+            let wide = |t: &Tube, by: [f64; 2]| Tube { ra: by[0] * t.ra, rb: by[1] * t.rb, ..*t };
+            let near = tube_tube(&wide(&a, ends[0]), &wide(&b, ends[1]));
             (near.gap < 0.0).then_some((near.s, near.t))
         };
         if let Some(place) = place {
-            push_tubes(frame, pair.edges, [a, b], place, clearance, out);
+            push_tubes(frame, pair.edges, [a, b], place, mean([a, b], place, ends), out);
         }
     }
+}
+
+/// Clearance at a place of each tube, from those at their ends.
+fn mean([a, b]: [Tube; 2], (s, t): (f64, f64), ends: [[f64; 2]; 2]) -> f64 {
+    let usual = ends[0][0];
+    if ends == [[usual; 2]; 2] {
+        return usual;
+    }
+    let wide = |tube: &Tube, by: [f64; 2], x: f64| by[0] * tube.ra * (1.0 - x) + by[1] * tube.rb * x;
+    (wide(&a, ends[0], s) + wide(&b, ends[1], t)) / (a.radius(s) + b.radius(t))
 }
 
 /// Edges in ascending order.
@@ -213,7 +248,7 @@ fn push_fork(frame: &Frame, &(node, edges): &(NodeId, [EdgeId; 2]), clearance: f
     }
     let mut ways = [[f64::INFINITY; 2]; 2];
     ways[e.end(node)][f.end(node)] = 0.0;
-    let Some((s, t)) = deepest_apart(&a, &b, ways, clearance) else { return };
+    let Some((s, t)) = deepest_apart(&a, &b, ways, [[clearance; 2]; 2]) else { return };
     let Closeness { normal, distance, radii } = closeness(&a, &b, (s, t));
     // The places keep their distance from the node, beyond which vessels count as separate. The node can thus open the
     // bifurcation by moving towards both ends, though directions do not change to first order.

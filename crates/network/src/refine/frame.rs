@@ -1,6 +1,6 @@
 //! State of a refinement that rarely changes: connectivity, mobility, and chains.
 
-use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_skeleton::{Adjacency, CUT_DISTANCE, Edge, EdgeId, Node, NodeId, Skeleton};
 use rayon::prelude::*;
 
@@ -144,6 +144,17 @@ impl Frame {
         if self.adjacency.valence(node) > 1 {
             self.leash[node.index()] = way.min(self.furthest);
             self.mobility[node.index()] = self.readiness(self.skeleton.node(node).radius);
+        }
+    }
+
+    /// Shortens the steps of nodes to their displacement limits. Nodes beside them would else follow steps that are not made.
+    pub fn clip(&self, steps: &mut [Vec3]) {
+        for (i, step) in steps.iter_mut().enumerate().filter(|(_, step)| step.norm_squared() > 0.0) {
+            let (from, home) = (self.skeleton.nodes[i].position, self.origin[i]);
+            let way = from + *step - home;
+            if way.norm() > self.leash[i] {
+                *step = home + way * (self.leash[i] / way.norm()) - from;
+            }
         }
     }
 

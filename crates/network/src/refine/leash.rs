@@ -1,5 +1,6 @@
 //! Displacement limits of a measured network: only overlapping vessels move, and no further than necessary.
 
+use super::contact::tip_clearances;
 use super::frame::Frame;
 use super::overlapping::overlapping;
 use super::params::Freedom;
@@ -92,6 +93,20 @@ impl Leashes {
         // The radii are those of the widened vessels.
         let is_near = |o: &Overlap| factor * o.distance < near * o.radii;
         close.pairs.retain(|o| known.contains(&o.edges) || is_near(o) || o.nodes.iter().flatten().any(is_loose));
+        close
+    }
+
+    /// Terminals that almost touch, as overlaps of their vessels at these places.
+    pub(super) fn at_tips(frame: &Frame) -> Vec<Overlap> {
+        let (skeleton, adjacency) = (&frame.skeleton, &frame.adjacency);
+        let tips = tip_clearances(skeleton, adjacency, CLOSE);
+        let mut close = widened(frame, CLOSE).pairs;
+        close.retain_mut(|overlap| {
+            let [a, b] = overlap.nodes.map(|nodes| nodes.into_iter().find(|n| tips.contains_key(n)));
+            let [Some(a), Some(b)] = [a, b] else { return false };
+            overlap.points = [a, b].map(|n| skeleton.node(n).position);
+            true
+        });
         close
     }
 

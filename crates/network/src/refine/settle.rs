@@ -10,9 +10,13 @@ use super::shape;
 use super::tighten::{Groups, close, kept};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
-use anastomesh_skeleton::{EdgeId, Overlap, Skeleton};
-use rustc_hash::FxHashMap;
+use anastomesh_skeleton::{Adjacency, EdgeId, NodeId, Overlap, Overlaps, Skeleton};
+use rustc_hash::{FxHashMap, FxHashSet};
 
+/// Maximum number of rounds in which nodes return that came too close to others. In the second half, whole groups do.
+const ROUNDS: usize = 24;
+/// Reduction of the share by which a node returns, from each node to the next.
+const FALL: f64 = 0.34;
 /// Number of pulls, and fraction of the displacement that each takes back.
 const PULLS: usize = 40;
 const PULL: f64 = 0.12;
@@ -45,17 +49,17 @@ pub(super) fn settle(
     let relative = |o: &Overlap| o.distance / o.radii;
     let before: FxHashMap<[EdgeId; 2], f64> = touching(skeleton).pairs.iter().map(|o| (o.edges, relative(o))).collect();
     let settled = settled(skeleton, origin, (&groups.of_node, &before), kept(clearance), unit, progress)?;
-    // Groups that come too close to others return to where they were. Then others may be too close to these.
-    let mut returns = vec![false; groups.count];
-    for _ in 0..groups.count.max(1) {
+    // Nodes that come too close to others return to where they were, with those around them. Then others may be too close to
+    // these.
+    let moved: Vec<Point3> = skeleton.nodes.iter().map(|node| node.position).collect();
+    let mut shares = vec![0.0_f64; moved.len()];
+    for round in 0..=ROUNDS {
         if progress.is_cancelled() {
             return Err(RefineError::Cancelled);
         }
         let mut state = skeleton.clone();
-        for (i, group) in groups.of_node.iter().enumerate() {
-            if group.is_some_and(|g| !returns[g]) {
-                state.nodes[i].position = settled[i];
-            }
+        for (i, _) in groups.of_node.iter().enumerate().filter(|(_, group)| group.is_some()) {
+            state.nodes[i].position = settled[i] + (moved[i] - settled[i]) * shares[i];
         }
         let mut after = touching(&state);
         after.pairs.retain(|o| relative(o) < before.get(&o.edges).copied().unwrap_or(1.0) - TOLERANCE);
@@ -63,13 +67,39 @@ pub(super) fn settle(
             *skeleton = state;
             break;
         }
-        let worse = groups.touching(&after);
-        if (0..groups.count).all(|g| returns[g] || !worse[g]) {
-            break;
+        if round < ROUNDS / 2 {
+            return_around(&state, &adjacency, &after, &mut shares);
+        } else {
+            let worse = groups.touching(&after);
+            let returns = |group: &Option<usize>| group.is_some_and(|g| worse[g]);
+            shares
+                .iter_mut()
+                .zip(&groups.of_node)
+                .filter(|(_, group)| returns(group))
+                .for_each(|(share, _)| *share = 1.0);
         }
-        returns.iter_mut().zip(worse).for_each(|(returns, worse)| *returns |= worse);
     }
     Ok(())
+}
+
+/// Makes the nodes of close pairs return, and those around them in part.
+fn return_around(skeleton: &Skeleton, adjacency: &Adjacency, close: &Overlaps, shares: &mut [f64]) {
+    let mut ring: Vec<NodeId> = close.pairs.iter().flat_map(|o| o.nodes).flatten().collect();
+    let mut seen = FxHashSet::default();
+    // A node that has returned already leaves it to those around it.
+    let mut share: f64 = 1.0;
+    while share > 0.0 {
+        ring.retain(|node| seen.insert(*node));
+        let is_spent = ring.iter().all(|node| shares[node.index()] >= share);
+        ring.iter().for_each(|node| shares[node.index()] = shares[node.index()].max(share));
+        share = if is_spent { share } else { share - FALL };
+        let around =
+            |node: &NodeId| adjacency.edges(*node).iter().map(|&edge| skeleton.edge(edge).other(*node)).collect();
+        ring = ring.iter().flat_map(|node| -> Vec<NodeId> { around(node) }).collect();
+        if ring.is_empty() {
+            break;
+        }
+    }
 }
 
 /// Positions of the nodes after pulls and projections. Nodes without a group stay. `before`: relative distances of pairs
@@ -128,6 +158,7 @@ fn project(frame: &mut Frame, contacts: &Contacts, clearance: f64) -> bool {
         count[node.index()] += 1;
     }
     sum.iter_mut().zip(&count).for_each(|(sum, &count)| *sum /= f64::from(count.max(1)).powf(AVERAGE));
+    frame.clip(&mut sum);
     shape::smooth_steps(frame, &mut sum, &count);
     for (i, step) in sum.iter().enumerate().filter(|(_, step)| step.norm_squared() > 0.0) {
         let home = frame.origin[i];

@@ -220,6 +220,9 @@ impl<'a> Solver<'a> {
         for (sum, &count) in sum.iter_mut().zip(&count) {
             *sum /= f64::from(count.max(1)).powf(AVERAGE);
         }
+        if self.leashes.is_some() {
+            self.frame.clip(&mut sum);
+        }
         shape::smooth_steps(&self.frame, &mut sum, &count);
         self.advance(&sum);
         contacts.len() + room.len()
@@ -276,8 +279,12 @@ impl<'a> Solver<'a> {
             return;
         }
         let overlaps = self.overlaps();
-        let near = self.released(&overlaps);
-        self.bends += divide_near(&mut self.frame, near.as_ref().unwrap_or(&overlaps));
+        let mut near = self.released(&overlaps).unwrap_or(overlaps);
+        if !near.pairs.is_empty() {
+            // Else a vessel that was moved apart would approach the other one along a long straight piece.
+            near.pairs.extend(Leashes::at_tips(&self.frame));
+        }
+        self.bends += divide_near(&mut self.frame, &near);
         self.frame.rejoin();
         self.restart();
     }

@@ -294,3 +294,17 @@ proptest! {
         }
     }
 }
+
+/// Two vessels that leave one node side by side, and end almost in contact: their fixed ends must not drive them apart.
+#[test]
+fn vessels_that_almost_touch_up_to_their_ends_move_by_less_than_a_radius() {
+    for gap in [0.001, 0.01] {
+        let y = 1.0 + 0.5 * gap;
+        let points = [[-8.0, 0.0, 0.0], [0.0, -y, 0.0], [39.0, -y, 0.0], [0.0, y, 0.0], [39.0, y, 0.0]];
+        let given = network(&points, 1.0, &[(0, 1), (1, 2), (0, 3), (3, 4)]);
+        let params = RefineParams::default().freedom(Freedom::Measured);
+        let refined = refine(&given, &params, &()).unwrap();
+        assert_eq!(refined.report.result.overlaps, 0);
+        assert!(refined.report.displacement_radii.max < 1.0, "{:?}", refined.report.displacement_radii);
+    }
+}
