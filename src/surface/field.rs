@@ -108,8 +108,8 @@ impl Field {
         Ok(field)
     }
 
-    /// Reduces the weights of tubes where many of them share a place, as the vessels of a star do: the sum of their kernels
-    /// would make a far wider lumen than each of them.
+    /// Reduces the weights of tubes where many of them share a place, as the vessels of a star do. The sum of their
+    /// kernels would make a far wider lumen than each of them.
     fn thin_out(&mut self) {
         if self.pieces.len() <= FEW {
             return;

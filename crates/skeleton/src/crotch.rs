@@ -60,8 +60,8 @@ impl Skeleton {
     }
 }
 
-/// Search for crotches in one skeleton. Successive overlaps of one edge share the search for their paths, which takes most of
-/// the time in tangled networks: overlaps are best in ascending order.
+/// Search for crotches in one skeleton. Successive overlaps of one edge share the paths from it, which take most of the
+/// time in tangled networks. Overlaps are best in ascending order.
 #[derive(Debug, Default)]
 pub struct CrotchSearch {
     /// First edge of the last overlap.

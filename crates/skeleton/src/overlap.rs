@@ -182,9 +182,8 @@ fn tube_box(tube: &Tube) -> Aabb {
 
 /// Deepest overlap of two tubes among points not close along the skeleton; `None` without overlap.
 ///
-/// They overlap if their distance is below the sum of their radii, multiplied by the factors in `clearance` at the ends of
-/// `a` and of `b`. `way[i][j]` is the distance along
-/// the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of four pairs of ends. So "more
+/// They overlap if their distance is below the sum of their radii. The factors in `clearance` multiply this sum at the ends
+/// of `a` and of `b`. `way[i][j]` is the distance along the skeleton from end i of `a` to end j of `b`. Each path from s to t passes one of four pairs of ends. So "more
 /// than 6 r apart" is a set of linear conditions. The admissible set is a convex polygon, and the gap is convex on it.
 pub fn deepest_apart(a: &Tube, b: &Tube, way: [[f64; 2]; 2], clearance: [[f64; 2]; 2]) -> Option<(f64, f64)> {
     let conditions = apart_conditions(a, b, way);

@@ -4,6 +4,8 @@
 //! half-faces. *Ghost* tetrahedra, whose last vertex is [`GHOST`], lie on the outer side of every boundary face, so
 //! that each half-face has a mate. Around a hull or a carved domain, ghosts are connected across the boundary's edges.
 
+mod cell;
+mod changes;
 mod undo;
 
 use anastomesh_mesh::adjacency::tet_adjacency;
@@ -11,6 +13,7 @@ pub(crate) use anastomesh_mesh::face_key;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::{TET_FACES, TetMesh};
+pub(crate) use cell::Cell;
 use undo::UndoLog;
 
 /// Vertex at infinity, last vertex of every ghost tetrahedron.
@@ -73,20 +76,6 @@ pub enum ComplexError {
         /// The vertex.
         vertex: u32,
     },
-}
-
-/// Tetrahedron: its vertices, and the mate of the face opposite each vertex. Half a cache line, aligned like its vertices
-/// (see [`Complex::into_mesh`]).
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(super) struct Cell {
-    pub(super) verts: [u32; 4],
-    pub(super) mates: [u32; 4],
-}
-
-impl Cell {
-    /// No tetrahedron.
-    pub(super) const EMPTY: Self = Self { verts: [NONE; 4], mates: [NONE; 4] };
 }
 
 /// Tetrahedra and ghosts over a set of points. See the module's text for half-faces and ghosts.
