@@ -91,7 +91,9 @@ fn return_around(skeleton: &Skeleton, adjacency: &Adjacency, close: &Overlaps, s
     while share > 0.0 {
         ring.retain(|node| seen.insert(*node));
         let is_spent = ring.iter().all(|node| shares[node.index()] >= share);
-        ring.iter().for_each(|node| shares[node.index()] = shares[node.index()].max(share));
+        for node in &ring {
+            shares[node.index()] = shares[node.index()].max(share);
+        }
         share = if is_spent { share } else { share - FALL };
         let around =
             |node: &NodeId| adjacency.edges(*node).iter().map(|&edge| skeleton.edge(edge).other(*node)).collect();
