@@ -79,6 +79,9 @@ pub struct RefineReport {
     /// Iteration with the best state, which is the result. `None` if every state was worse than the input in a
     /// protected metric; the result is then the input.
     pub chosen: Option<usize>,
+    /// True if the iterations ended early, because too many vessels are close to each other.
+    #[serde(default)]
+    pub gave_up: bool,
     /// The paper's unit of length, in the unit of the skeleton: the median radius is 0.448 of it.
     pub unit: f64,
     /// Figures of the input.
@@ -153,6 +156,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
         nodes_split: splits.nodes.len(),
         bends,
         chosen,
+        gave_up: moved.gave_up,
         unit: moved.unit,
         given: given_figures,
         split: split_figures,

@@ -28,12 +28,20 @@ const EARLY: usize = 10;
 /// Maximum bend intervals without improvement before the loop stops.
 const PATIENCE: usize = 4;
 
+/// Maximum number of pairs of close vessels that are pushed apart, over all iterations: a constant, and a number per edge. Shared
+/// measured networks take at most 3 million in total. Only networks in which nearly everything overlaps exceed it.
+const PUSHES: [u64; 2] = [3_000_000, 1000];
+/// Pairs pushed apart in the time of testing one pair for overlap.
+const COUNT: u64 = 30;
+
 /// Result of the loop.
 pub(super) struct Moved {
     /// Best state; `None` if every state was worse than the input in a protected metric.
     pub best: Option<State>,
     pub history: Vec<HistorySample>,
     pub unit: f64,
+    /// True if the iterations ended early because too many vessels are close to each other.
+    pub gave_up: bool,
 }
 
 pub(super) struct State {
@@ -67,7 +75,7 @@ pub(super) fn solve(
     let overlaps = best.offer(&solver, 0);
     if !solver.loosen(&overlaps) {
         at(params.iterations);
-        return Ok(Moved { best: best.state, history, unit: solver.unit });
+        return Ok(Moved { best: best.state, history, unit: solver.unit, gave_up: false });
     }
     for iteration in 1..=params.iterations {
         if progress.is_cancelled() {
@@ -75,10 +83,11 @@ pub(super) fn solve(
         }
         let asked = solver.step(iteration <= with_forces);
         let quiet = asked == 0 && iteration > with_forces;
-        let mut last = iteration == params.iterations;
+        let mut last = iteration == params.iterations || solver.is_over_budget();
         if last || quiet || iteration % between == 0 {
             let was_perfect = best.is_perfect();
             let overlaps = best.offer(&solver, iteration);
+            solver.spent += COUNT * solver.contacts.pairs.len() as u64;
             // One more interval after success, for the clearance.
             last |= was_perfect && best.is_perfect() || iteration >= best.improved + PATIENCE * between;
             last |= quiet && best.is_perfect();
@@ -96,12 +105,15 @@ pub(super) fn solve(
             break;
         }
     }
+    let gave_up = solver.is_over_budget() && !best.is_perfect();
     let mut best = best.state;
     if let (Some(_), Some(state)) = (leashes, &mut best) {
         tighten::tighten(&mut state.skeleton, &state.origin, params.clearance);
-        settle::settle(&mut state.skeleton, &state.origin, params.clearance, solver.unit, progress)?;
+        if !gave_up {
+            settle::settle(&mut state.skeleton, &state.origin, params.clearance, solver.unit, progress)?;
+        }
     }
-    Ok(Moved { best, history, unit: solver.unit })
+    Ok(Moved { best, history, unit: solver.unit, gave_up })
 }
 
 /// Best state so far.
@@ -154,6 +166,8 @@ struct Solver<'a> {
     last: Vec<Vec3>,
     rate: Vec<f64>,
     bends: usize,
+    /// Pairs pushed apart so far.
+    spent: u64,
 }
 
 impl<'a> Solver<'a> {
@@ -173,6 +187,7 @@ impl<'a> Solver<'a> {
             last: Vec::new(),
             rate: Vec::new(),
             bends: 0,
+            spent: 0,
         };
         solver.restart();
         solver
@@ -185,6 +200,12 @@ impl<'a> Solver<'a> {
         self.moved.resize(n, f64::INFINITY);
         self.last.resize(n, Vec3::zeros());
         self.rate.resize(n, 1.0);
+    }
+
+    /// True if the budget is used up. It applies where only overlapping vessels move.
+    fn is_over_budget(&self) -> bool {
+        let [constant, per_edge] = PUSHES;
+        self.leashes.is_some() && self.spent > constant + per_edge * self.frame.skeleton.edges.len() as u64
     }
 
     /// Performs one step and returns the number of requests.
@@ -211,6 +232,7 @@ impl<'a> Solver<'a> {
             let barrier = Barrier { support: p.clearance, unit: self.unit };
             add(&forces::pushes(&self.frame, &self.contacts, &barrier, rates));
         }
+        self.spent += self.contacts.pairs.len() as u64;
         let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
         // If only overlapping vessels move, none is lengthened or opened for a cut.
         let room =
@@ -251,6 +273,7 @@ impl<'a> Solver<'a> {
 
     /// Gives overlapping vessels priority until the next count and adds bends; returns the number of bends.
     fn attend(&mut self, overlaps: &Overlaps) -> usize {
+        self.spent += COUNT * self.contacts.pairs.len() as u64;
         let before = std::mem::replace(&mut self.frame.urgent, vec![false; self.frame.origin.len()]);
         for node in overlaps.pairs.iter().flat_map(|o| o.nodes).flatten() {
             self.frame.urgent[node.index()] = true;

@@ -308,3 +308,21 @@ fn vessels_that_almost_touch_up_to_their_ends_move_by_less_than_a_radius() {
         assert!(refined.report.displacement_radii.max < 1.0, "{:?}", refined.report.displacement_radii);
     }
 }
+
+/// All vessels cross at one place, with fixed ends: the work is bounded, and the report states it.
+#[test]
+fn a_tangle_that_cannot_be_resolved_is_given_up() {
+    let count = 160;
+    let way = |i: usize| {
+        let (z, angle) = (1.0 - 2.0 * (i as f64 + 0.5) / count as f64, 2.4 * i as f64);
+        let across = (1.0 - z * z).sqrt();
+        [12.0 * across * angle.cos(), 12.0 * across * angle.sin(), 12.0 * z]
+    };
+    let points: Vec<[f64; 3]> = (0..count).flat_map(|i| [way(i), way(i).map(|x| -x)]).collect();
+    let edges: Vec<(u32, u32)> = (0..count as u32).map(|i| (2 * i, 2 * i + 1)).collect();
+    let params = RefineParams::default().freedom(Freedom::Measured).every(0);
+    let report = run(&network(&points, 1.0, &edges), &params).report;
+    let iterations = report.history.last().map_or(0, |sample| sample.iteration);
+    assert!(report.gave_up && iterations < params.iterations, "{iterations}");
+    assert!(report.to_string().contains("ended early"), "{report}");
+}

@@ -58,6 +58,9 @@ fn text(report: &RefineReport, name: NameOf) -> String {
         }
         out.push('\n');
     }
+    if report.gave_up {
+        let _ = writeln!(out, "ended early: too many vessels are close to each other");
+    }
     if !report.worse.is_empty() {
         let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", report.worse_names());
     }
