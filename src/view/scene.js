@@ -380,10 +380,10 @@ class Cones {
     integerAttribute(gl, 3, Uint32Array.from({ length: 2 * count }, (_, i) => names[i >> 1]));
     gl.bindVertexArray(null);
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    network.nodes.forEach((x, i) => {
-      low[i % 3] = Math.min(low[i % 3], x);
-      high[i % 3] = Math.max(high[i % 3], x);
-    });
+    for (let i = 0; i < ends.length; i += 4) for (let k = 0; k < 3; k++) {
+      low[k] = Math.min(low[k], ends[i + k] - ends[i + 3]);
+      high[k] = Math.max(high[k], ends[i + k] + ends[i + 3]);
+    }
     this.chunks = [{ box: { low, high, centre: add(low, high).map(x => x / 2), radius: Math.hypot(...add(high, low, -1)) / 2 } }];
   }
 
