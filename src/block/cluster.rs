@@ -9,13 +9,14 @@ use super::lone_tube::lone_tube;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
 use super::template::FilledTube;
+use super::webs::webs;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::surface::{
-    CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
+    CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SizedWall, SurfaceParams, cap_terminals,
     euler_characteristic, vessel_wall,
 };
 use anastomesh_mesh::budget::Stop;
-use anastomesh_mesh::geometry::{Section, Tube};
+use anastomesh_mesh::geometry::{Point3, Section, Tube};
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::{Inset, split_corner_tets};
@@ -23,6 +24,7 @@ use anastomesh_tet::{
     TetError,
     parts::{Watch, fill_outward},
 };
+use std::borrow::Cow;
 
 /// Flat cap of a terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +67,8 @@ pub struct ClusterMesh {
     pub filled: i64,
     /// Report of layers that are thinner than requested.
     pub thin: Option<ThinLayers>,
+    /// Places of narrow gaps that were closed (only with [`BlockParams::close_gaps`]).
+    pub closed_gaps: Vec<Point3>,
 }
 
 /// Meshes one cluster.
@@ -89,7 +93,7 @@ pub(crate) fn mesh_cluster_watched(
     if let Some(tube) = lone_tube(cluster, params) {
         return of_tube(id, cluster, tube, params);
     }
-    let (surface, voxel, astray) = cluster_surface(id, cluster, params, watch)?;
+    let ClusterWall { surface, voxel, astray, closed_gaps } = cluster_surface(id, cluster, params, watch)?;
     let edge = surface.mesh.mean_edge();
     let failed = |source| BlockError::of_filling(id, source);
     let FilledSurface { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
@@ -111,6 +115,7 @@ pub(crate) fn mesh_cluster_watched(
         loops,
         filled: all - loops,
         thin,
+        closed_gaps,
         ends: Vec::new(),
     };
     if params.ends != EndStyle::Open {
@@ -178,17 +183,29 @@ fn of_tube(
     Ok(out)
 }
 
-/// Creates the closed wall of a cluster with its caps, for [`mesh_cluster`]. Also returns cell size and deviations.
+/// Closed wall of a cluster.
+pub(super) struct ClusterWall {
+    /// Wall with caps.
+    surface: CappedSurface,
+    /// Cell size of the contouring grid.
+    voxel: f64,
+    /// Deviations from the vessels.
+    astray: Astray,
+    /// Places of gaps that were closed.
+    closed_gaps: Vec<Point3>,
+}
+
+/// Creates the closed wall of a cluster with its caps, for [`mesh_cluster`].
 ///
 /// # Errors
 /// The wall cannot be created, has a different topology than the skeleton, or cannot be capped; `Stopped` if the watch
 /// stops it.
-pub fn cluster_surface(
+fn cluster_surface(
     id: ClusterId,
     cluster: &Cluster,
     params: &BlockParams,
     watch: &Watch,
-) -> Result<(CappedSurface, f64, Astray), BlockError> {
+) -> Result<ClusterWall, BlockError> {
     params.check()?;
     if !params.allow_fused
         && let Some((end, node, ClusterEnd { section, .. })) = buried(cluster).next()
@@ -208,9 +225,22 @@ pub fn cluster_surface(
     let failed = |source| BlockError::of_wall(id, source);
     let stopped = |stop| stopped(id, stop);
     let finer = Finer { forks: cluster.fine.clone(), ends: cluster.ends.iter().map(|end| end.section).collect() };
-    let wall = vessel_wall(&cluster.tubes, &surface_params, &finer, watch).map_err(failed)?;
-    let handles = 1 - euler_characteristic(&wall.mesh) / 2;
-    let loops = Loops::of(cluster, handles, watch).map_err(stopped)?.expected;
+    let make = |tubes: &[Tube]| vessel_wall(tubes, &surface_params, &finer, watch).map_err(failed);
+    let count = |wall: &SizedWall| {
+        let handles = 1 - euler_characteristic(&wall.mesh) / 2;
+        Loops::of(cluster, handles, watch).map(|loops| [handles, loops.expected]).map_err(stopped)
+    };
+    let mut tubes = Cow::Borrowed(&cluster.tubes);
+    let mut wall = make(&tubes)?;
+    let [mut handles, mut loops] = count(&wall)?;
+    let mut closed_gaps = Vec::new();
+    if handles > loops && params.close_gaps {
+        let webs = webs(&wall.mesh, cluster, watch).map_err(stopped)?;
+        tubes.to_mut().extend(webs.tubes);
+        closed_gaps = webs.gaps;
+        wall = make(&tubes)?;
+        [handles, loops] = count(&wall)?;
+    }
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });
     }
@@ -218,7 +248,7 @@ pub fn cluster_surface(
     if !params.allow_fused {
         stays(id, astray)?;
     }
-    let mut field = Field::new(&cluster.tubes, params.kappa).map_err(failed)?;
+    let mut field = Field::new(&tubes, params.kappa).map_err(failed)?;
     let closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
     let given =
         |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
@@ -238,7 +268,7 @@ pub fn cluster_surface(
     for cap in capped.cap.iter_mut().flatten() {
         *cap = closed[*cap as usize].0;
     }
-    Ok((capped, voxel, astray))
+    Ok(ClusterWall { surface: capped, voxel, astray, closed_gaps })
 }
 
 /// Failure of a cluster that was stopped.

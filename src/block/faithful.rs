@@ -104,7 +104,7 @@ fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Poi
             o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
         })
     };
-    let mut walls = WallSearch { wall, searched: 0, tree: None };
+    let mut walls = WallSearch::new(wall);
     let mut crotches = CrotchSearch::default();
     for o in &overlaps.pairs {
         watch.spend(PER_PAIR)?;
@@ -120,7 +120,7 @@ fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Poi
 }
 
 /// Search for triangles of a wall between two points.
-struct WallSearch<'a> {
+pub(super) struct WallSearch<'a> {
     wall: &'a TriMesh,
     /// Number of searches.
     searched: usize,
@@ -128,9 +128,13 @@ struct WallSearch<'a> {
     tree: Option<Bvh>,
 }
 
-impl WallSearch<'_> {
+impl<'a> WallSearch<'a> {
+    pub(super) fn new(wall: &'a TriMesh) -> Self {
+        Self { wall, searched: 0, tree: None }
+    }
+
     /// True if the wall crosses or touches the segment between two points.
-    fn is_parted(&mut self, p: &Point3, q: &Point3) -> bool {
+    pub(super) fn is_parted(&mut self, p: &Point3, q: &Point3) -> bool {
         self.searched += 1;
         if self.searched <= FEW {
             return is_parted(self.wall, p, q);

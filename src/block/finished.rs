@@ -82,6 +82,9 @@ pub struct About {
     /// Report of layers that are thinner than requested.
     #[serde(default)]
     pub thin: Option<ThinLayers>,
+    /// Places of narrow gaps between vessels that were closed.
+    #[serde(default)]
+    pub closed_gaps: Vec<[f64; 3]>,
     /// Successful retry after a failure.
     pub cured: Option<Cured>,
 }
@@ -101,7 +104,8 @@ impl Finished {
     /// # Errors
     /// An end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, thin, .. } = cluster;
+        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, thin, closed_gaps, .. } =
+            cluster;
         let mut faces = Faces::new(&mesh, &hull);
         let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
         let cap = |cap: &super::CapFaces| {
@@ -109,7 +113,8 @@ impl Finished {
         };
         let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
         let uncapped = uncapped.iter().map(|n| n.0).collect();
-        let about = About { uncapped, astray, handles, loops, filled, thin, ..About::default() };
+        let closed_gaps = closed_gaps.into_iter().map(Into::into).collect();
+        let about = About { uncapped, astray, handles, loops, filled, thin, closed_gaps, ..About::default() };
         let (wall, adjacency) = faces.rest();
         Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
     }

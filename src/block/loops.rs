@@ -1,12 +1,10 @@
 //! Loops of a cluster's vessels. A loop within its own lumen is filled and creates no handle.
 
+use super::graph::Graph;
 use crate::partition::Cluster;
 use anastomesh_mesh::budget::Stop;
-use anastomesh_mesh::geometry::{DisjointSets, Point3, Total, Tube, place_key, point_segment};
+use anastomesh_mesh::geometry::{Point3, Tube, point_segment};
 use anastomesh_tet::parts::Watch;
-use rustc_hash::FxHashMap;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Maximum distance from the vessels, in radii, of points that a filled loop spans. Further away there is a hole;
 /// closer walls blend.
@@ -53,44 +51,7 @@ impl Loops {
     }
 }
 
-/// Graph with tubes as edges.
-struct Graph<'a> {
-    tubes: &'a [Tube],
-    places: Vec<Point3>,
-    /// End nodes of each tube.
-    ends: Vec<[u32; 2]>,
-    /// Tubes at each node.
-    beside: Vec<Vec<u32>>,
-    /// Tubes that close a loop, one for each independent loop.
-    closing: Vec<u32>,
-}
-
-impl<'a> Graph<'a> {
-    fn of(tubes: &'a [Tube]) -> Self {
-        let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-        let mut sets = DisjointSets::new(0);
-        let mut graph = Self { tubes, places: Vec::new(), ends: Vec::new(), beside: Vec::new(), closing: Vec::new() };
-        for (tube, number) in tubes.iter().zip(0..) {
-            let ends = [&tube.a, &tube.b].map(|p| {
-                *numbers.entry(place_key(p)).or_insert_with(|| {
-                    graph.places.push(*p);
-                    graph.beside.push(Vec::new());
-                    sets.push()
-                })
-            });
-            graph.ends.push(ends);
-            for end in ends {
-                graph.beside[end as usize].push(number);
-            }
-            if sets.root(ends[0]) != sets.root(ends[1]) {
-                sets.join(ends[0], ends[1]);
-            } else if ends[0] != ends[1] {
-                graph.closing.push(number);
-            }
-        }
-        graph
-    }
-
+impl Graph<'_> {
     /// True if the shortest loop through a tube spans only lumen.
     fn is_filled(&self, tube: u32, watch: &Watch) -> Result<bool, Stop> {
         let [a, b] = self.ends[tube as usize];
@@ -110,37 +71,6 @@ impl<'a> Graph<'a> {
             }
         }
         Ok(true)
-    }
-
-    /// Tubes of the shortest path between two nodes that avoids one tube (Dijkstra's algorithm).
-    fn way(&self, from: u32, to: u32, without: u32) -> Option<Vec<u32>> {
-        let mut came_by: Vec<Option<u32>> = vec![None; self.places.len()];
-        let mut heap = BinaryHeap::from([Reverse((Total(0.0), from, without))]);
-        while let Some(Reverse((Total(distance), place, by))) = heap.pop() {
-            if came_by[place as usize].is_some() {
-                continue;
-            }
-            came_by[place as usize] = Some(by);
-            if place == to {
-                break;
-            }
-            for &tube in self.beside[place as usize].iter().filter(|&&tube| tube != without) {
-                let length = self.tubes[tube as usize].length();
-                heap.push(Reverse((Total(distance + length), self.other(tube, place), tube)));
-            }
-        }
-        let (mut way, mut place) = (Vec::new(), to);
-        while place != from {
-            let tube = came_by[place as usize]?;
-            way.push(tube);
-            place = self.other(tube, place);
-        }
-        Some(way)
-    }
-
-    fn other(&self, tube: u32, place: u32) -> u32 {
-        let [a, b] = self.ends[tube as usize];
-        if a == place { b } else { a }
     }
 
     /// True if a triangle lies within the tubes, up to `WITHIN`.

@@ -15,6 +15,7 @@ mod error;
 mod faithful;
 mod finished;
 mod free_ends;
+mod graph;
 mod layered;
 mod lone_tube;
 mod loops;
@@ -26,6 +27,7 @@ mod shape;
 mod strip;
 mod template;
 mod wall;
+mod webs;
 
 pub(crate) use buried::buried;
 pub(crate) use cluster::mesh_cluster_watched;

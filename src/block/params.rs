@@ -42,6 +42,10 @@ pub struct BlockParams {
     /// Accept defects where vessels of the network overlap. Walls may have other handles than the skeleton has loops
     /// ([`super::ClusterMesh::handles`]). Tips inside another vessel have no cap ([`super::ClusterMesh::uncapped`]).
     pub allow_fused: bool,
+    /// Close narrow gaps between vessels that touch beyond a bifurcation, where the wall has more handles than the skeleton
+    /// has loops.
+    #[serde(default)]
+    pub close_gaps: bool,
     /// Maximum depth of an end surface below its plane, in radii of the cut.
     pub depth: f64,
     /// Elongation of template tetrahedra along the vessel.
@@ -74,6 +78,7 @@ impl Default for BlockParams {
             ends: EndStyle::Disc,
             relax_ends: true,
             allow_fused: false,
+            close_gaps: false,
             depth: 1.5,
             stretch: unstretched(),
             core: 1.0,

@@ -111,17 +111,21 @@ struct BlockAttempt {
 /// Attempts at a cluster. `overlapping`: vessels of the network overlap in it, or are so close that their tubes may.
 /// `first`: first strategy to try.
 ///
-/// If neither another grid nor a finer one with a narrower kernel separates such vessels, they are fused. With
-/// `plan.fuse`, they are fused at once.
+/// If neither another grid nor a finer one with a narrower kernel separates such vessels, narrow gaps between them are
+/// closed. If that fails, too, they are fused. With `plan.fuse`, they are fused at once.
 fn attempts(plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Vec<BlockAttempt> {
     let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first);
     let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
     let apart = apart.map(|way| BlockAttempt { name: way.name().into(), params: way.params(plan) });
+    let closed = apart.clone().filter(|_| overlapping).map(|attempt: BlockAttempt| BlockAttempt {
+        name: format!("narrow gaps closed, {}", attempt.name),
+        params: BlockParams { close_gaps: true, ..attempt.params },
+    });
     let fused = ways().filter(|_| overlapping).map(|way| BlockAttempt {
         name: format!("vessels that overlap taken as one, {}", way.name()),
         params: BlockParams { allow_fused: true, ..way.params(plan) },
     });
-    apart.chain(fused).collect()
+    apart.chain(closed).chain(fused).collect()
 }
 
 /// A block with a smaller radius ratio is tried in other ways, too; a stretched one, with one that is smaller by as much,

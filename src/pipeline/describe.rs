@@ -8,7 +8,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::estimate::Estimate;
 use super::make::{BlockResult, Workshop};
 use super::plan::{JointStyle, MeshPlan};
-use super::report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, RunReport, ThinBlock};
+use super::report::{BlockCounts, ClosedGaps, FailedBlock, FilledLoops, FusedBlock, RunReport, ThinBlock};
 use super::tips;
 use crate::block::{About, Astray, BlockDump};
 use crate::partition::{ClusterId, CutId};
@@ -77,6 +77,10 @@ pub(super) fn describe_blocks(
         if about.filled > 0 {
             topology.filled.push((id, about.filled));
             report.filled.push(FilledLoops { block: format!("cluster {i}"), nodes: nodes(), loops: about.filled });
+        }
+        if !about.closed_gaps.is_empty() {
+            let (block, places) = (format!("cluster {i}"), about.closed_gaps);
+            report.closed_gaps.push(ClosedGaps { block, nodes: nodes(), places });
         }
         if about.handles != about.loops || !about.uncapped.is_empty() || about.astray != Astray::default() {
             report.anastomoses += (about.handles - about.loops).max(0);

@@ -68,6 +68,17 @@ pub struct FilledLoops {
     pub loops: i64,
 }
 
+/// A cluster in which narrow gaps between vessels that touch were closed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClosedGaps {
+    /// `cluster 12`.
+    pub block: String,
+    /// Nodes of the block, as indices in the file that was read (the first 20).
+    pub nodes: Vec<u32>,
+    /// Places of the gaps.
+    pub places: Vec<[f64; 3]>,
+}
+
 /// A block in which layers are thinner than asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ThinBlock {
@@ -171,6 +182,8 @@ pub struct RunReport {
     pub anastomoses: i64,
     /// Clusters with loops that are filled by their own lumen, which are none of the mesh.
     pub filled: Vec<FilledLoops>,
+    /// Clusters in which narrow gaps between vessels were closed.
+    pub closed_gaps: Vec<ClosedGaps>,
     /// Blocks in which layers, where they were asked for, are less than half as thick at some place; the thinnest first.
     pub thin_layers: Vec<ThinBlock>,
     /// Blocks that are missing from the mesh.

@@ -136,6 +136,10 @@ impl Summary<'_> {
         if !run.retries.is_empty() || !run.fused.is_empty() {
             text.push_str(" (-v lists them)");
         }
+        let gaps: usize = run.closed_gaps.iter().map(|gaps| gaps.places.len()).sum();
+        if gaps > 0 {
+            let _ = write!(text, "; {} between vessels that touch closed", counted(gaps, "narrow gap"));
+        }
         text
     }
 

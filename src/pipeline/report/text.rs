@@ -74,6 +74,13 @@ impl RunReport {
                 named(&f.nodes, name)
             )?;
         }
+        for gaps in &self.closed_gaps {
+            let (count, nodes) = (counted(gaps.places.len(), "narrow gap"), named(&gaps.nodes, name));
+            writeln!(out, "  {count} between vessels that touch closed in {} (nodes {nodes}):", gaps.block)?;
+            for [x, y, z] in &gaps.places {
+                writeln!(out, "    at {x:.4} {y:.4} {z:.4}")?;
+            }
+        }
         self.write_thin_layers(name, out)?;
         for failed in &self.failed {
             let nodes = named(&failed.nodes, name);

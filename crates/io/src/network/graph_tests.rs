@@ -25,6 +25,7 @@ fixtures! {
     GRID = "fork.vtu", Vtu;
     VMV = "fork.vmv", Vmv;
     JSON = "fork.json", Json;
+    VESSELS = "fork_vessels.json", Json;
     SV1D = "fork.in", Sv1d;
 }
 
@@ -276,4 +277,24 @@ fn a_file_without_radii_gets_the_given_one() {
 fn hdf5_is_named_with_a_way_to_convert_it() {
     let refused = read_network("brain.h5".as_ref(), &NetworkOptions::default()).unwrap_err().to_string();
     assert!(refused.contains("HDF5 is not supported") && refused.contains("vascpy"), "{refused}");
+}
+
+#[test]
+fn vessels_that_end_beside_their_vertex_are_joined_to_it() {
+    let text = String::from_utf8_lossy(VESSELS).replace("[[0, 0, 10], [0, 5, 20]]", "[[0, 1, 11], [0, 5, 20]]");
+    let network = read(text.as_bytes(), NetworkFormat::Json).unwrap();
+    let (joined, vertex) = (network.names.find("point 0 of vessel 1", 5).unwrap(), network.names.find("7", 5).unwrap());
+    let edge = network.skeleton.edges.iter().find(|edge| edge.nodes == [vertex, joined]).unwrap();
+    assert_eq!((network.skeleton.edges.len(), edge.radii), (4, [2.0; 2]));
+    assert_eq!(network.skeleton.node(vertex).position, Point3::new(0.0, 0.0, 10.0));
+}
+
+#[test]
+fn faults_in_lists_of_vessels_are_named() {
+    let says = |from: &str, to: &str, expected: &str| says(VESSELS, NetworkFormat::Json, from, to, expected);
+    says("\"id\": 8", "\"id\": 9", "two vertices have the id 9");
+    says("\"right_vertex_id\": 8", "\"right_vertex_id\": 3", "vessel 1 ends at vertex 3");
+    says("[[0, 0, 10], [0, 5, 20]]", "[[0, 0, 10]]", "vessel 1 has 1 points");
+    says("[2.0, 1.5]", "[2.0]", "vessel 1 has 2 points and 1 radii");
+    says("[2.0, 1.5]", "[2.0, \"x\"]", "entry 1 of the list 'vessels'");
 }

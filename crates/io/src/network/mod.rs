@@ -39,7 +39,7 @@ pub mod faults {
     pub use super::error::NetworkFault;
     pub use super::graph::{GraphFault, GraphPlace};
     pub use super::graph_xml::GraphXmlError;
-    pub use super::json::JsonError;
+    pub use super::json::{JsonError, VesselListError};
     pub use super::npy::NpyNetworkError;
     pub use super::pajek::PajekError;
     pub use super::radii::{NodeArrayFault, RadiusFault};

@@ -1,5 +1,6 @@
 //! Reader of nodes and links.
 
+use super::vessels::{self, VesselListError};
 use crate::network::columns::Value;
 use crate::network::content::{NetworkFile, NetworkOptions};
 use crate::network::graph::{Graph, GraphFault, GraphPlace};
@@ -33,6 +34,9 @@ pub enum JsonError {
     /// The zero-dimensional model is not a valid network.
     #[error(transparent)]
     Model(#[from] SvZeroDError),
+    /// The list of vessels is not a valid network.
+    #[error(transparent)]
+    Vessels(#[from] VesselListError),
 }
 
 pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result<NetworkFile, JsonError> {
@@ -40,6 +44,9 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
     let whole: Json = serde_json::from_slice(bytes)?;
     if svzerod::is_model(&whole) {
         return Ok(svzerod::read(whole, options)?);
+    }
+    if vessels::is_vessel_list(&whole) {
+        return Ok(vessels::read(&whole)?);
     }
     let list = |names: &[&str]| names.iter().find_map(|name| whole.get(name)).and_then(Json::as_array);
     let nodes = list(&["nodes"]).ok_or(JsonError::NoList { list: "nodes" })?;
