@@ -3,6 +3,7 @@
 use super::graph::{GraphFault, GraphPlace};
 use super::*;
 use crate::damage::damage;
+use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::{Edge, NodeId, Skeleton, clean};
 use proptest::prelude::*;
 
