@@ -81,10 +81,9 @@ pub mod meshing {
     pub use crate::block::ThinLayers;
     pub use crate::partition::PartitionError;
     pub use crate::pipeline::{
-        BlockCounts, ClosedGaps, Difference, Estimate, FailedBlock, FilledLoops, Forecast, FusedBlock, JointStyle,
-        LeftWhole, Manifest, Meeting, MeshPlan, MeshSize, Meshed, NoShard, PlanError, Retry, Role, RunError, RunReport,
-        Shard, ShareReport, StageTime, Store, StoreError, ThinBlock, TooLarge, Whole, make_share, mesh_into,
-        mesh_network,
+        BlockCounts, Difference, Estimate, FailedBlock, FilledLoops, Forecast, FusedBlock, JointStyle, LeftWhole,
+        Manifest, Meeting, MeshPlan, MeshSize, Meshed, NoShard, PlanError, Retry, Role, RunError, RunReport, Shard,
+        ShareReport, StageTime, Store, StoreError, ThinBlock, TooLarge, Whole, make_share, mesh_into, mesh_network,
     };
 }
 

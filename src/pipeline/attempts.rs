@@ -464,12 +464,13 @@ mod tests {
         };
         let plan = MeshPlan::default();
         assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len()]);
-        assert_eq!(fused(&plan, true), [[false; 5].as_slice(), &[true; RetryStrategy::ALL.len()]].concat());
+        assert_eq!(fused(&plan, true), [[false; 5].as_slice(), &[false; 5], &[true; RetryStrategy::ALL.len()]].concat());
         assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; RetryStrategy::ALL.len()]);
         let names: Vec<String> =
             attempts(&plan, true, RetryStrategy::Usual).into_iter().map(|attempt| attempt.name).collect();
         assert_eq!(names[3], "finer voxel, narrower kernel");
-        assert_eq!(names[5], "vessels that overlap taken as one, as usual");
+        assert_eq!(names[5], "narrow gaps closed, as usual");
+        assert_eq!(names[10], "vessels that overlap taken as one, as usual");
         assert!(RetryStrategy::ALL.is_sorted());
         for first in RetryStrategy::APART {
             assert_eq!(attempts(&plan, false, first)[0].name, first.name());

@@ -41,9 +41,7 @@ pub use once::replay;
 pub use plan::{JointStyle, MeshPlan, PlanError};
 #[cfg(feature = "cli")]
 pub use report::named;
-pub use report::{
-    BlockCounts, ClosedGaps, FailedBlock, FilledLoops, FusedBlock, Meeting, MeshSize, Retry, RunReport, ThinBlock,
-};
+pub use report::{BlockCounts, FailedBlock, FilledLoops, FusedBlock, Meeting, MeshSize, Retry, RunReport, ThinBlock};
 pub(crate) use run::mesh_shared;
 pub use run::{Meshed, mesh_into};
 pub use share::{ShareReport, make_share};

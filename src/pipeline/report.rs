@@ -70,7 +70,7 @@ pub struct FilledLoops {
 
 /// A cluster in which narrow gaps between vessels that touch were closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ClosedGaps {
+pub(crate) struct ClosedGaps {
     /// `cluster 12`.
     pub block: String,
     /// Nodes of the block, as indices in the file that was read (the first 20).
@@ -183,7 +183,7 @@ pub struct RunReport {
     /// Clusters with loops that are filled by their own lumen, which are none of the mesh.
     pub filled: Vec<FilledLoops>,
     /// Clusters in which narrow gaps between vessels were closed.
-    pub closed_gaps: Vec<ClosedGaps>,
+    pub(crate) closed_gaps: Vec<ClosedGaps>,
     /// Blocks in which layers, where they were asked for, are less than half as thick at some place; the thinnest first.
     pub thin_layers: Vec<ThinBlock>,
     /// Blocks that are missing from the mesh.
