@@ -1,16 +1,18 @@
-//! Assignment of cells to parts.
+//! Assignment of cells to parts: ranges of blocks along the tree of blocks.
 
+use super::bisect::{Site, bisect};
 use super::error::PartsError;
+use super::tree::BlockGraph;
 use anastomesh_mesh::geometry::hilbert::{Grid, hilbert_key};
 use anastomesh_mesh::geometry::{Aabb, Point3, Vec3};
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use anastomesh_mesh::stacks::Cells;
-use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 use std::io;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
-/// Bits per axis of positions along the curve.
+/// Bits per axis of positions along the Hilbert curve.
 const BITS: u32 = 20;
 
 /// Maximum distance of a cut from its ideal place, as a fraction of the mean part, for a cut between two blocks. Sizes of
@@ -57,12 +59,13 @@ struct Piece {
 
 /// Balanced parts of a mesh. Part sizes differ from the mean by at most 3 %, and by one cell at least.
 ///
-/// Blocks are ordered by the positions of their centres along a Hilbert curve, and parts are ranges of this order. A
-/// block at the end of a range is divided by the positions of its cells, unless its end is close. Cells in a part keep
-/// the order of the mesh.
+/// Blocks are ordered along the trees of blocks that share points, and the trees along a Hilbert curve. Parts are ranges
+/// of this order. A block at the end of a range is divided by planes ([`bisect`]), unless its end is near. Cells in a
+/// part keep the order of the mesh.
 ///
-/// Needs about 100 bytes per block, and 4 bytes per cell of the divided blocks, of which there are fewer than parts. A mesh
-/// without blocks is one block. While a block is divided, 16 bytes per cell of it are held, and its corners.
+/// Needs about 200 bytes per block, and 4 bytes per cell of the divided blocks, of which there are fewer than parts. A mesh
+/// without blocks is one block. While blocks are ordered, 4 bytes per point are held. While a block is divided, 16 bytes per
+/// cell of it are held, and its corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::volume) struct Partition {
     /// In the order of the mesh.
@@ -77,6 +80,8 @@ struct RunSums {
     /// Sum of the centres.
     centre: Vec3,
     bounds: Aabb,
+    /// Points, ascending; empty if there is a single run.
+    points: Vec<u32>,
 }
 
 impl Partition {
@@ -91,6 +96,7 @@ impl Partition {
         }
         let (mut runs, mut centres) = (Vec::new(), Vec::new());
         let mut bounds = Aabb::EMPTY;
+        let mut joints = Joints::default();
         let (mut source, mut start, mut at) = (0, 0_u32, 0_u32);
         // Number of cells that begin before a tetrahedron.
         let before = |tet: u32| match (cells, tet.checked_sub(1)) {
@@ -107,6 +113,7 @@ impl Partition {
                     let cells = before(tets.start)..before(tets.end);
                     runs.push(CellRun { source, start, tets, cells, place: Place::Whole { part: 0, local: 0 } });
                     centres.push(Point3::from(sum.centre / f64::from(sum.tets)));
+                    joints.add(runs.len() as u32 - 1, &sum.points);
                     bounds = bounds.union(&sum.bounds);
                 }
                 (source, start) = (source + 1, at);
@@ -117,11 +124,13 @@ impl Partition {
             return Err(miscounted());
         }
         let grid = Grid::new([bounds.min, bounds.max], BITS);
-        let mut order: Vec<usize> = (0..runs.len()).collect();
-        order.sort_by_cached_key(|&run| (hilbert_key(grid.cell(&centres[run]), BITS), run));
+        let mut along: Vec<u32> = (0..runs.len() as u32).collect();
+        along.sort_by_cached_key(|&run| (hilbert_key(grid.cell(&centres[run as usize]), BITS), run));
+        let sizes = runs.iter().map(|run| run.cells.len() as u64).collect();
+        let order = joints.graph(sizes).in_preorder(along);
         let shares = shares(&order, &runs, count, parts.get());
         let mut partition = Self { runs, sizes: vec![0; parts.get()] };
-        partition.assign(mesh, cells, &grid, &shares)?;
+        partition.assign(mesh, cells, &starts(&order, &centres), &shares)?;
         Ok(partition)
     }
 
@@ -130,10 +139,10 @@ impl Partition {
         &mut self,
         mesh: &dyn MeshSource,
         cells: Option<&Cells>,
-        grid: &Grid,
+        starts: &[Point3],
         shares: &[Vec<Share>],
     ) -> io::Result<()> {
-        for (run, shares) in self.runs.iter_mut().zip(shares) {
+        for ((run, shares), &from) in self.runs.iter_mut().zip(shares).zip(starts) {
             let mut pieces: Vec<Piece> = Vec::with_capacity(shares.len());
             let mut start = 0;
             for share in shares {
@@ -145,7 +154,7 @@ impl Partition {
                 [Piece { part, local, .. }] => Place::Whole { part, local },
                 // A run without cells: its tetrahedra belong to a cell of the run before.
                 [] => Place::Whole { part: 0, local: 0 },
-                _ => Place::Divided { order: divided(mesh, cells, run, grid, &pieces)?, pieces },
+                _ => Place::Divided { order: divided(mesh, cells, run, from, &pieces)?, pieces },
             };
         }
         Ok(())
@@ -233,16 +242,63 @@ impl Lookup<'_> {
     }
 }
 
-/// Cells of a run in one part, in the order of the curve.
+/// Cells of a run in one part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Share {
     part: u32,
     cells: u32,
 }
 
-/// Shares of each run, for runs in this order along the curve.
-fn shares(order: &[usize], runs: &[CellRun], cells: usize, parts: usize) -> Vec<Vec<Share>> {
-    let lengths: Vec<u64> = order.iter().map(|&run| runs[run].cells.len() as u64).collect();
+/// Runs that share points.
+#[derive(Default)]
+struct Joints {
+    /// First run of each point.
+    first: Vec<u32>,
+    pairs: FxHashSet<[u32; 2]>,
+}
+
+impl Joints {
+    /// Adds the points of the next run.
+    fn add(&mut self, run: u32, points: &[u32]) {
+        if let Some(&last) = points.last()
+            && self.first.len() <= last as usize
+        {
+            self.first.resize(last as usize + 1, u32::MAX);
+        }
+        for &v in points {
+            let first = &mut self.first[v as usize];
+            if *first == u32::MAX {
+                *first = run;
+            } else if *first != run {
+                self.pairs.insert([*first, run]);
+            }
+        }
+    }
+
+    fn graph(self, sizes: Vec<u64>) -> BlockGraph {
+        let mut neighbors = vec![Vec::new(); sizes.len()];
+        let mut pairs: Vec<[u32; 2]> = self.pairs.into_iter().collect();
+        pairs.sort_unstable();
+        for [a, b] in pairs {
+            neighbors[a as usize].push(b);
+            neighbors[b as usize].push(a);
+        }
+        BlockGraph { neighbors, sizes }
+    }
+}
+
+/// Centre of the run before each run in this order; of the first one its own.
+fn starts(order: &[u32], centres: &[Point3]) -> Vec<Point3> {
+    let mut starts = centres.to_vec();
+    for two in order.windows(2) {
+        starts[two[1] as usize] = centres[two[0] as usize];
+    }
+    starts
+}
+
+/// Shares of each run, for runs in this order.
+fn shares(order: &[u32], runs: &[CellRun], cells: usize, parts: usize) -> Vec<Vec<Share>> {
+    let lengths: Vec<u64> = order.iter().map(|&run| runs[run as usize].cells.len() as u64).collect();
     let cuts = cuts(&lengths, cells as u64, parts as u64);
     let mut shares = vec![Vec::new(); runs.len()];
     let (mut at, mut part) = (0, 0);
@@ -251,7 +307,7 @@ fn shares(order: &[usize], runs: &[CellRun], cells: usize, parts: usize) -> Vec<
         while at < end {
             let until = cuts.get(part).copied().unwrap_or(u64::MAX).min(end);
             if until > at {
-                shares[run].push(Share { part: part as u32, cells: (until - at) as u32 });
+                shares[run as usize].push(Share { part: part as u32, cells: (until - at) as u32 });
                 at = until;
             }
             part += usize::from(cuts.get(part) == Some(&at));
@@ -298,7 +354,14 @@ fn sums_of(mesh: &dyn MeshSource, part: u32) -> io::Result<Vec<RunSums>> {
     for length in lengths.into_iter().filter(|&length| length > 0) {
         let (tets, after) = rest.split_at(length);
         rest = after;
-        let mut sum = RunSums { tets: length as u32, centre: Vec3::zeros(), bounds: Aabb::EMPTY };
+        let mut sum = RunSums { tets: length as u32, centre: Vec3::zeros(), bounds: Aabb::EMPTY, points: Vec::new() };
+        if mesh.parts() > 1 || length < piece.tets.len() {
+            sum.points = tets.as_flattened().to_vec();
+            sum.points.sort_unstable();
+            sum.points.dedup();
+            // A missing point is an error that the corners show.
+            sum.points.retain(|&v| (v as usize) < mesh.counts().points);
+        }
         each_corners(mesh, tets, |corners| {
             sum.centre += centre_of(corners);
             corners.iter().for_each(|corner| sum.bounds.include(corner));
@@ -330,37 +393,41 @@ fn centre_of(corners: &[Point3; 4]) -> Vec3 {
     (a + b + c + d) * 0.25
 }
 
-/// New positions of the cells of a run, which has several parts.
+/// New positions of the cells of a run, which has several parts. The first part is on the side of `from`.
 fn divided(
     mesh: &dyn MeshSource,
     cells: Option<&Cells>,
     run: &CellRun,
-    grid: &Grid,
+    from: Point3,
     pieces: &[Piece],
 ) -> io::Result<Vec<u32>> {
     let tets = mesh.tets(run.source)?.tets;
     let inside = (run.tets.start - run.start) as usize..(run.tets.end - run.start) as usize;
     let tets = tets.get(inside).ok_or_else(miscounted)?;
     let cell_of = |tet: u32| cells.map_or(tet, |cells| cells.of_tet(tet)).checked_sub(run.cells.start);
-    // The position of a cell is that of its first tetrahedron.
-    let mut keys: Vec<(u64, u32)> = Vec::with_capacity(run.cells.len());
-    let mut tet = run.tets.start;
+    // The place of a cell is that of its first tetrahedron.
+    let mut sites: Vec<Site> = Vec::with_capacity(run.cells.len());
+    let (mut tet, mut origin) = (run.tets.start, None);
     each_corners(mesh, tets, |corners| {
-        if let Some(cell) = cell_of(tet).filter(|&cell| cell as usize == keys.len()) {
-            keys.push((hilbert_key(grid.cell(&centre_of(corners).into()), BITS), cell));
+        if let Some(cell) = cell_of(tet).filter(|&cell| cell as usize == sites.len()) {
+            let centre = centre_of(corners);
+            sites.push(Site::new(centre - *origin.get_or_insert(centre), cell));
         }
         tet += 1;
     })?;
-    if keys.len() != run.cells.len() {
+    if sites.len() != run.cells.len() {
         return Err(miscounted());
     }
-    keys.par_sort_unstable();
-    let piece_at = |place: u32| pieces.partition_point(|piece| piece.start <= place) - 1;
-    let mut order = vec![0; keys.len()];
-    for (&(_, cell), place) in keys.iter().zip(0..) {
-        order[cell as usize] = piece_at(place) as u32;
+    let ends = pieces.iter().skip(1).map(|piece| piece.start as usize).chain([sites.len()]);
+    let sizes: Vec<usize> = pieces.iter().zip(ends).map(|(piece, end)| end - piece.start as usize).collect();
+    bisect(&mut sites, &sizes, from - origin.unwrap_or_default());
+    let mut order = vec![0; sites.len()];
+    let mut rest = &sites[..];
+    for (piece, size) in (0..).zip(sizes) {
+        let (own, after) = rest.split_at(size);
+        own.iter().for_each(|site| order[site.cell as usize] = piece);
+        rest = after;
     }
-    drop(keys);
     let mut next: Vec<u32> = pieces.iter().map(|piece| piece.start).collect();
     for place in &mut order {
         let piece = *place as usize;
