@@ -22,7 +22,7 @@ from anastomesh.options.files import CapOptions, FileOptions
 OURS = {"output", "json", "quiet", "verbose", "progress", "log-format", "certificate"}
 
 #: Options of `mesh` that concern its files.
-IN_FILES = {"dry-run", "shard", "format", "prisms", "split-regions", "float32", "cells", "compress"}
+IN_FILES = {"dry-run", "shard", "format", "prisms", "parts", "split-regions", "float32", "cells", "compress"}
 
 #: Functions, their verb and keywords, and options of the verb that are found elsewhere in Python.
 FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [
@@ -36,12 +36,12 @@ FUNCTIONS: list[tuple[Callable[..., Any], str, type, set[str]]] = [
     (anastomesh.refine, "refine", options.RefineOptions, set()),
     (anastomesh.dual, "dual", options.NetworkOptions, set()),
     (anastomesh.generate, "generate", options.GenerateOptions, {"terminals"}),
-    # Formats of standard input and output; check_surface is --check-only; regions and holes are arrays.
+    # Formats and files are those of Mesh.save; check_surface is --check-only; regions and holes are arrays.
     (
         anastomesh.tetrahedralize,
         "tetrahedralize",
         options.TetrahedralizeOptions,
-        {"from", "to", "check-only", "region", "hole"},
+        {"from", "to", "check-only", "region", "hole", "parts"},
     ),
     (anastomesh.check, "check", options.CheckOptions, set()),
     (anastomesh.convert, "convert", options.ConvertOptions, set()),
@@ -77,7 +77,7 @@ def test_every_option_has_its_keyword(function: Callable[..., Any], verb: str, t
 
 def test_options_of_files_are_those_of_convert() -> None:
     files = set(keywords(FileOptions)) | set(keywords(CapOptions))
-    assert {"format", "prisms", "float32", "cells", "compress"} < files < set(keywords(options.ConvertOptions))
+    assert {"format", "prisms", "parts", "float32", "cells", "compress"} < files < set(keywords(options.ConvertOptions))
 
 
 def test_check_surface_has_options_of_tetrahedralize() -> None:

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::common::{Common, ended, print, thread_pool};
 use super::exit::{Exit, Failure};
 use super::fidelity::conclude;
-use super::format::FormatArgs;
+use super::format::{FormatArgs, NO_PARTS};
 use super::grid::GridArgs;
 use super::hint;
 use super::kind::{FileKind, OpenedMesh, boundary_of};
@@ -160,6 +160,9 @@ impl Args {
             (from, to) => return Err(Failure::usage(Unlike { from, to }.to_string())),
         }
         .map_err(Failure::input)?;
+        if self.format.parts.is_some() && to != FileKind::Mesh {
+            return Err(Failure::usage(NO_PARTS));
+        }
         if self.split_regions && (from, to) != (FileKind::Mesh, FileKind::Mesh) {
             return Err(Failure::usage("--split-regions needs a volume mesh as input and as output"));
         }
@@ -190,6 +193,7 @@ impl Args {
                 .memory((self.memory / 4) as usize)
                 .grid(self.grid.options())
                 .prisms(self.format.prisms)
+                .parts(self.format.parts)
                 .remark(&remark as &dyn Fn(&str));
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();

@@ -2,6 +2,7 @@
 
 use super::exit::Failure;
 use anastomesh_io::volume::MeshFormat;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
@@ -14,6 +15,10 @@ pub struct FormatArgs {
     /// Write the prisms and pyramids of layers as whole cells, with their layer as cell data `layer` (VTU and PVTU), or without (MSH)
     #[arg(long)]
     pub prisms: bool,
+    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders of an OpenFOAM case (.foam), N pieces
+    /// with ghost cells (.pvtu), or partitions with ghost cells (.msh)
+    #[arg(long, value_name = "N")]
+    pub parts: Option<NonZeroUsize>,
 }
 
 fn named(name: &str) -> Result<MeshFormat, String> {
@@ -31,6 +36,22 @@ impl FormatArgs {
         if self.prisms && !matches!(format, MeshFormat::Vtu | MeshFormat::Pvtu | MeshFormat::Msh | MeshFormat::Msh2) {
             return Err(Failure::usage("--prisms is not supported by this format: use .vtu, .pvtu or .msh"));
         }
+        self.check_parts(format)?;
         Ok(format)
     }
+
+    fn check_parts(self, format: MeshFormat) -> Result<(), Failure> {
+        if self.parts.is_some() && !format.has_parts() {
+            return Err(Failure::usage(NO_PARTS));
+        }
+        if self.parts.is_some() && self.prisms {
+            return Err(Failure::usage(
+                "--parts does not combine with --prisms; OpenFOAM cases have prisms in any case",
+            ));
+        }
+        Ok(())
+    }
 }
+
+/// Message about a format without parts.
+pub const NO_PARTS: &str = "--parts is not supported by this format: use .foam, .pvtu or .msh";

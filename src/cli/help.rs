@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 60] = [
+const RARE: [&str; 61] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -41,6 +41,7 @@ const RARE: [&str; 60] = [
     "max-radius-edge",
     "max-tets",
     "metrics",
+    "parts",
     "plot",
     "prisms",
     "progress",

@@ -36,7 +36,7 @@ use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedR
 use anastomesh_domain::{Domain, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
-use anastomesh_io::volume::{WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
+use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_io::{ensure_text_writable, write_text};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::text::conditions;
@@ -191,6 +191,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.format.prisms && !domain.is_plain() {
         return Err(Failure::usage("--prisms does not combine with regions around the lumen"));
     }
+    if args.format.parts.is_some() && !domain.is_plain() && format != MeshFormat::Pvtu {
+        return Err(Failure::usage("--parts with regions around the lumen needs .pvtu"));
+    }
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     args.certificate.ensure_writable(format)?;
@@ -321,6 +324,7 @@ impl Args {
             .memory((self.blocks.memory / 4) as usize)
             .grid(self.grid.options())
             .prisms(self.format.prisms)
+            .parts(self.format.parts)
             .values(data.as_ref().map(|data| data as &dyn Beside))
             .remark(&remark as &dyn Fn(&str));
         // A cancelled pass over the blocks fails with an error.

@@ -33,6 +33,10 @@ class FileOptions(TypedDict, total=False):
             False,
         ),
     ]
+    parts: Annotated[
+        int | None,
+        Option("Number of balanced parts for parallel solvers: processor folders (.foam), or parts with ghost cells (.pvtu, .msh)"),
+    ]
     float32: Annotated[
         bool, Option("Round coordinates in VTU and PVTU files to 32 bits; the validity check holds for the exact ones", False)
     ]

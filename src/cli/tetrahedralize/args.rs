@@ -8,6 +8,7 @@ use crate::cli::numbers::{number, of_region};
 use crate::cli::page::ReportArgs;
 use anastomesh_mesh::Point3;
 use anastomesh_tet::{Interior, Region, Tetrahedralizer};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -23,6 +24,10 @@ pub struct Args {
     /// .neigh), .npyd (folder of `NumPy` arrays); `-` for standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders of an OpenFOAM case (.foam), N pieces
+    /// with ghost cells (.pvtu), or partitions with ghost cells (.msh)
+    #[arg(long, value_name = "N")]
+    pub parts: Option<NonZeroUsize>,
     /// Format of the input, overriding its extension
     #[arg(long, value_name = "FORMAT")]
     pub from: Option<InputFormat>,

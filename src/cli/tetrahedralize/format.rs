@@ -129,6 +129,11 @@ impl Target {
         Ok(Self::Family(path.to_path_buf()))
     }
 
+    /// True if a mesh can be written in parts.
+    pub fn has_parts(&self) -> bool {
+        matches!(self, Self::File(path) if MeshFormat::of(path).is_ok_and(MeshFormat::has_parts))
+    }
+
     /// Checks that no input file is overwritten.
     pub fn ensure_apart(&self, input: &[PathBuf]) -> Result<(), Failure> {
         let base = match self {

@@ -21,6 +21,7 @@ use super::common;
 use super::common::Common;
 use super::exit::{Exit, Failure};
 use super::fidelity::conclude;
+use super::format::NO_PARTS;
 use super::log;
 use super::stop::Stop;
 use crate::report::page::{self, Mark, Section};
@@ -57,6 +58,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         Some(path) if !plan.check_only => Some(Target::of(path, args.to)?),
         _ => None,
     };
+    if args.parts.is_some() && !target.as_ref().is_some_and(Target::has_parts) {
+        return Err(Failure::usage(NO_PARTS));
+    }
     plan::ensure_fits(&plan, args, target.as_ref())?;
     args.report.ensure_writable()?;
     if !plan.quiet {
@@ -96,8 +100,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
         let volume = output::volume(made, &input);
-        let written =
-            watch.time("write", || pool.install(|| output::write(&target, &volume, &input, &plan, &listener)))?;
+        let written = watch.time("write", || {
+            pool.install(|| output::write((&target, args.parts), &volume, &input, &plan, &listener))
+        })?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
         pool.install(|| write_page(args, &plan, &report, &volume))?;
     }

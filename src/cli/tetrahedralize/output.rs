@@ -1,6 +1,7 @@
 //! Writing of the mesh.
 
 use std::io::Write;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use super::format::Target;
@@ -48,9 +49,9 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     volume
 }
 
-/// Writes the mesh; returns the files.
+/// Writes the mesh, in parts on request; returns the files.
 pub fn write(
-    target: &Target,
+    (target, parts): (&Target, Option<NonZeroUsize>),
     volume: &VolumeMesh,
     input: &Input,
     plan: &TetPlan,
@@ -68,7 +69,8 @@ pub fn write(
     };
     match target {
         Target::File(path) => {
-            write_mesh_with(&WriteOptions::default(), path, volume, &notes, progress).map_err(|e| failed(&e))?;
+            let options = WriteOptions::default().parts(parts);
+            write_mesh_with(&options, path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }
         Target::Family(base) => {

@@ -88,6 +88,11 @@ impl MeshFormat {
         self.is_grid() || matches!(self, Self::Msh | Self::Msh2 | Self::Npy)
     }
 
+    /// True if a mesh can be written in parts for parallel solvers.
+    pub fn has_parts(self) -> bool {
+        matches!(self, Self::OpenFoam | Self::Pvtu | Self::Msh)
+    }
+
     /// True if a mesh is a folder.
     pub(super) fn is_folder(self) -> bool {
         matches!(self, Self::OpenFoam | Self::SimVascular | Self::Npy)

@@ -2,6 +2,7 @@
 
 use super::format::MeshFormat;
 use anastomesh_mesh::beside::Beside;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Options of writing a mesh; each format uses those that apply.
@@ -18,6 +19,9 @@ pub struct WriteOptions<'a> {
     pub values: Option<&'a dyn Beside>,
     /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU, PVTU and MSH only, without values.
     pub prisms: bool,
+    /// Number of parts for parallel solvers: folders of processors beside an `OpenFOAM` mesh, exactly so many pieces of a PVTU
+    /// mesh, and partitions of an MSH 4.1 mesh. Other formats have none ([`PartsError`](super::PartsError)).
+    pub parts: Option<NonZeroUsize>,
     /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
     pub remark: Option<&'a dyn Fn(&str)>,
 }
@@ -28,6 +32,7 @@ anastomesh_mesh::setters!(WriteOptions<'a> {
     grid: GridOptions,
     values: impl Into<Option<&'a dyn Beside>>,
     prisms: bool,
+    parts: impl Into<Option<NonZeroUsize>>,
     remark: impl Into<Option<&'a dyn Fn(&str)>>,
 });
 

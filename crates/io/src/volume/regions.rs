@@ -107,6 +107,7 @@ fn complete(
         has_regions: true,
         global_ids: None,
         solver_ids: Some(SolverIds { points: &region.points, tets: &region.tets, faces: &region.face_tets }),
+        piece: None,
         options: grid,
         values: None,
     }

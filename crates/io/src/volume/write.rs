@@ -4,6 +4,7 @@ use super::content::MeshNotes;
 use super::error::MeshFileError;
 use super::format::MeshFormat;
 use super::options::{GridOptions, WriteOptions, boundary_beside};
+use super::parts::PartsError;
 use super::pvtu::{PieceFolder, Pieces};
 use super::vtu::MixedGrid;
 use super::{medit, msh, npy, openfoam, pvtu, simvascular, vtu};
@@ -78,6 +79,13 @@ pub fn write_mesh_with(
 ) -> Result<(), MeshFileError> {
     let grid = options.grid;
     let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
+    if options.parts.is_some() && !format.has_parts() {
+        return Err(FileError::write(path)(PartsError::Format.into()));
+    }
+    if options.parts.is_some() && options.prisms {
+        let error = PartsError::Content { what: "prisms", instead: "write tetrahedra, or an OpenFOAM case" };
+        return Err(FileError::write(path)(error.into()));
+    }
     let write = || match format {
         MeshFormat::Vtu | MeshFormat::Msh | MeshFormat::Msh2 if options.prisms => {
             write_prisms(path, format, mesh, notes, grid, progress)
@@ -92,17 +100,30 @@ pub fn write_mesh_with(
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
             let memory = options.memory.unwrap_or(usual.memory);
-            pvtu::write(path, mesh, notes, Pieces { memory, grid, values: options.values, ..usual }, progress)
+            let pieces = Pieces { memory, grid, values: options.values, ..usual };
+            match options.parts {
+                Some(parts) => pvtu::write_parts(path, mesh, notes, (parts, pieces), progress),
+                None => pvtu::write(path, mesh, notes, pieces, progress),
+            }
         }
-        MeshFormat::OpenFoam => openfoam::write(path, mesh, notes, options.remark.unwrap_or(&|_| ()), progress),
+        MeshFormat::OpenFoam => {
+            openfoam::write(path, mesh, notes, options.parts, options.remark.unwrap_or(&|_| ()), progress)
+        }
         MeshFormat::Npy => npy::write(path, mesh, notes, options.values, progress),
         MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
         MeshFormat::Vtu => {
             write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
         }
-        MeshFormat::Msh => {
-            write_whole(path, |out| msh::write(&mut Asked { out, progress }, mesh, notes, options.values))
-        }
+        MeshFormat::Msh => write_whole(path, |out| {
+            let out = &mut Asked { out, progress };
+            match options.parts {
+                Some(_) if options.values.is_some() => {
+                    Err(PartsError::Content { what: "values", instead: "write .pvtu" }.into())
+                }
+                Some(parts) => msh::write_parts(out, mesh, notes, parts),
+                None => msh::write(out, mesh, notes, options.values),
+            }
+        }),
         MeshFormat::Msh2 => {
             write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, options.values))
         }

@@ -8,6 +8,9 @@ mod cursor;
 mod error;
 mod mixed;
 mod names;
+mod parts;
+#[cfg(test)]
+mod parts_tests;
 mod read;
 mod surfaces;
 mod tags;
@@ -19,6 +22,7 @@ mod write_2;
 
 pub use error::MshFault;
 pub(super) use mixed::write_mixed;
+pub(super) use parts::write_parts;
 pub(super) use read::read;
 pub(super) use write::write;
 pub(super) use write_2::{write as write_2, write_mixed as write_mixed_2};

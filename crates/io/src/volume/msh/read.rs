@@ -28,7 +28,11 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
     while let Some(name) = cursor.next_section()? {
         match name {
             "PhysicalNames" => parts.read_names(&mut cursor)?,
-            "Entities" => parts.read_entities(&mut cursor)?,
+            "Entities" => parts.read_entities(&mut cursor, false)?,
+            "PartitionedEntities" => {
+                parts.read_ghost_entities(&mut cursor)?;
+                parts.read_entities(&mut cursor, true)?;
+            }
             "Nodes" if version == Version::Two => parts.read_node_list(&mut cursor)?,
             "Nodes" => parts.read_nodes(&mut cursor)?,
             "Elements" if version == Version::Two => parts.read_element_list(&mut cursor)?,
@@ -86,11 +90,27 @@ impl MshSections {
         Ok(())
     }
 
-    fn read_entities(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
+    /// Skips the number of partitions and the entities of ghost cells.
+    fn read_ghost_entities(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
+        let [_partitions, ghosts]: [u64; 2] = cursor.sizes()?;
+        for _ in 0..ghosts {
+            (cursor.int()?, cursor.int()?);
+        }
+        Ok(())
+    }
+
+    /// Reads the groups of entities. Partitioned ones also have a parent and a list of partitions.
+    fn read_entities(&mut self, cursor: &mut MshCursor, is_partitioned: bool) -> Result<(), MshFault> {
         let counts: [u64; 4] = cursor.sizes()?;
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {
                 let tag = cursor.int()?;
+                if is_partitioned {
+                    (cursor.int()?, cursor.int()?);
+                    for _ in 0..cursor.size()? {
+                        cursor.int()?;
+                    }
+                }
                 cursor.skip_floats(if dimension == 0 { 3 } else { 6 })?;
                 for i in 0..cursor.size()? {
                     let group = cursor.int()?;

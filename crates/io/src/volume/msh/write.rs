@@ -22,6 +22,13 @@ pub(super) struct Volume {
     pub region: Option<i32>,
 }
 
+impl Volume {
+    /// Physical group.
+    pub(super) fn group(&self) -> Option<i32> {
+        self.group.as_ref().map(|group| group.0)
+    }
+}
+
 /// One volume in total, or one per region.
 pub(super) fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Surfaces) -> io::Result<Vec<Volume>> {
     if !notes.regions.is_empty() {
@@ -80,12 +87,22 @@ pub(super) fn write_before_elements(
     volumes: &[Volume],
     tags: &Tags,
 ) -> io::Result<()> {
+    write_head(out, mesh, surfaces, volumes)?;
+    write_nodes(out, mesh, surfaces, tags)
+}
+
+/// Writes the sections before the nodes.
+pub(super) fn write_head(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    surfaces: &Surfaces,
+    volumes: &[Volume],
+) -> io::Result<()> {
     out.write_all(b"$MeshFormat\n4.1 1 8\n")?;
     ints(out, &[1])?;
     out.write_all(b"\n$EndMeshFormat\n")?;
     write_names(out, mesh.patches(), volumes)?;
-    write_entities(out, surfaces, volumes)?;
-    write_nodes(out, mesh, surfaces, tags)
+    write_entities(out, surfaces, volumes)
 }
 
 /// Writes the custom section.
@@ -95,7 +112,7 @@ pub(super) fn write_extra(out: &mut impl Write, patches: &[Patch], notes: &MeshN
     write!(out, "\n$End{SECTION}\n")
 }
 
-fn corners(bounds: &Aabb) -> [f64; 6] {
+pub(super) fn corners(bounds: &Aabb) -> [f64; 6] {
     if bounds.min.x > bounds.max.x {
         return [0.0; 6];
     }
@@ -144,7 +161,13 @@ fn write_entities(out: &mut impl Write, surfaces: &Surfaces, volumes: &[Volume])
     out.write_all(b"\n$EndEntities\n")
 }
 
-fn write_nodes(out: &mut impl Write, mesh: &dyn MeshSource, surfaces: &Surfaces, tags: &Tags) -> io::Result<()> {
+/// Writes the nodes of all surfaces and of the inside.
+pub(super) fn write_nodes(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    surfaces: &Surfaces,
+    tags: &Tags,
+) -> io::Result<()> {
     let count = mesh.counts().points;
     let inner = count - surfaces.outer.count();
     let blocks = surfaces.list.iter().filter(|surface| surface.points > 0).count() + usize::from(inner > 0);
@@ -285,6 +308,6 @@ pub(super) fn sizes(out: &mut impl Write, values: &[usize]) -> io::Result<()> {
     values.iter().try_for_each(|&v| out.write_all(&(v as u64).to_le_bytes()))
 }
 
-fn floats(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
+pub(super) fn floats(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
     values.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
 }

@@ -7,7 +7,7 @@ use super::{head, inflow};
 use crate::flow::{Flow, Role};
 use std::fmt::Write;
 
-pub(super) fn velocity(boundary: &Boundary, flow: &Flow) -> String {
+pub(super) fn velocity(boundary: &Boundary, flow: &Flow, parts: Option<usize>) -> String {
     let mut text = head::text("volVectorField", "0/U");
     text += "dimensions      [0 1 -1 0 0 0 0];\ninternalField   uniform (0 0 0);\n\nboundaryField\n{\n";
     text += &inflow::entries(boundary, flow);
@@ -18,10 +18,10 @@ pub(super) fn velocity(boundary: &Boundary, flow: &Flow) -> String {
         "type inletOutlet;\n        inletValue uniform (0 0 0);\n        value uniform (0 0 0);"
     };
     text += &per_name(boundary, Role::Outlet, outlet);
-    text + &per_name(boundary, Role::Wall, "type noSlip;") + "}\n"
+    text + &per_name(boundary, Role::Wall, "type noSlip;") + &between_processors(parts, "(0 0 0)") + "}\n"
 }
 
-pub(super) fn pressure(boundary: &Boundary, flow: &Flow, settings: &Settings) -> String {
+pub(super) fn pressure(boundary: &Boundary, flow: &Flow, settings: &Settings, parts: Option<usize>) -> String {
     let outlets = Outlets::of(boundary, flow);
     let mut text = head::text("volScalarField", "0/p");
     text += "// Pressure by density.\n";
@@ -30,7 +30,15 @@ pub(super) fn pressure(boundary: &Boundary, flow: &Flow, settings: &Settings) ->
     text += "boundaryField\n{\n";
     text += &outlets.entries();
     text += &per_name(boundary, Role::Inlet, "type zeroGradient;");
-    text + &per_name(boundary, Role::Wall, "type zeroGradient;") + "}\n"
+    let start = format!("{:e}", outlets.start());
+    text + &per_name(boundary, Role::Wall, "type zeroGradient;") + &between_processors(parts, &start) + "}\n"
+}
+
+/// Entry of the faces between processors in a case with parts.
+fn between_processors(parts: Option<usize>, value: &str) -> String {
+    let entry =
+        || format!("    \"procBoundary.*\"\n    {{\n        type processor;\n        value uniform {value};\n    }}\n");
+    parts.map_or_else(String::new, |_| entry())
 }
 
 /// Entry for all patches of a role: by name pattern, or for walls by each name.

@@ -11,6 +11,11 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
+    /// Vertices, of a triangle the last one twice.
+    pub(super) fn corners(&self) -> [u32; 4] {
+        self.vertices
+    }
+
     fn triangle([a, b, c]: [u32; 3]) -> Self {
         Self { vertices: [a, b, c, c], is_quad: false }
     }

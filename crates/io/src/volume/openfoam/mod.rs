@@ -11,10 +11,15 @@ mod inflow;
 mod joined;
 #[cfg(test)]
 mod layered_tests;
+mod lists;
 mod outlets;
 mod poly_mesh;
+mod processors;
+#[cfg(test)]
+mod processors_tests;
 mod profile;
 mod rules;
+mod spools;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -23,6 +28,7 @@ mod zones;
 mod zones_tests;
 
 use super::content::MeshNotes;
+use super::parts::{Partition, PartsError};
 use crate::file::AtomicFolder;
 use crate::flow::{Flow, Role};
 use anastomesh_mesh::faces::Faces;
@@ -31,11 +37,14 @@ use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::stacks::Cells;
 use boundary::Boundary;
 use outlets::Outlets;
+use processors::Processors;
 use profile::InletFaces;
 use rules::Settings;
+use spools::Spools;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 /// Data of the text files.
@@ -43,6 +52,8 @@ struct Case<'a> {
     boundary: &'a Boundary,
     flow: &'a Flow,
     settings: &'a Settings,
+    /// Number of parts, if the case is decomposed.
+    parts: Option<usize>,
 }
 
 /// Writer of a text file in the folder.
@@ -55,9 +66,9 @@ const TEXTS: [(&str, Text); 9] = [
     ("system/controlDict", |case| system::control(case.flow)),
     ("system/fvSchemes", |case| system::schemes(case.flow, case.settings)),
     ("system/fvSolution", |case| system::solution(case.flow, case.settings)),
-    ("system/decomposeParDict", |_| case::decompose()),
-    ("0/U", |case| fields::velocity(case.boundary, case.flow)),
-    ("0/p", |case| fields::pressure(case.boundary, case.flow, case.settings)),
+    ("system/decomposeParDict", |case| case::decompose(case.parts)),
+    ("0/U", |case| fields::velocity(case.boundary, case.flow, case.parts)),
+    ("0/p", |case| fields::pressure(case.boundary, case.flow, case.settings, case.parts)),
 ];
 
 /// Empty marker file that `ParaView` opens.
@@ -75,6 +86,7 @@ fn is_ours(name: &str) -> bool {
         || TEXTS.iter().any(|(text, _)| *text == name)
         || [zones::CELL_ZONES, zones::FACE_ZONES].contains(&name)
         || diffusion::FILES.contains(&name)
+        || processors::is_ours(name)
         || in_folder(inflow::WAVEFORMS)
         || in_folder(inflow::VELOCITIES)
 }
@@ -86,17 +98,26 @@ fn is_ours(name: &str) -> bool {
 /// the faces between parts of the mesh, about 50 bytes each, and the position of every patch. With layers it also holds a
 /// byte per face.
 ///
+/// With `parts`, the folders of processors are written beside the undivided mesh, which `reconstructPar` and other serial
+/// programs need. Their faces are first stored in a temporary file, 36 bytes each.
+///
 /// # Errors
-/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
+/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary; `PartsError`
+/// if there are more parts than cells, or the mesh has regions.
 pub(super) fn write(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
+    parts: Option<NonZeroUsize>,
     remark: &dyn Fn(&str),
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
     if !notes.regions.is_empty() {
+        if parts.is_some() {
+            let (what, instead) = ("regions of an OpenFOAM case", "run decomposePar in the case");
+            return Err(PartsError::Content { what, instead }.into());
+        }
         zones::write(&folder, mesh, notes, remark, progress)?;
         folder.put(FOR_PARAVIEW, b"")?;
         return folder.commit();
@@ -105,15 +126,23 @@ pub(super) fn write(
     let cells = cells.as_ref();
     let faces = Faces::of(mesh)?;
     let boundary = Boundary::of(mesh, &faces, cells)?;
-    let figures = poly_mesh::write(&folder, mesh, &faces, cells, &boundary, progress)?;
+    let partition = parts.map(|parts| Partition::of(mesh, parts, cells)).transpose()?;
+    let mut spools = partition.as_ref().map(|partition| Spools::new(partition, path)).transpose()?;
+    let figures = poly_mesh::write(&folder, mesh, &faces, cells, &boundary, spools.as_mut(), progress)?;
     let flow = &*notes.flow_of(mesh.patches());
     let coupled = Outlets::of(&boundary, flow).are_coupled();
     let settings =
         Settings::of(&figures, cells.is_some(), reynolds(&boundary, flow), coupled, flow.transient.is_some());
     settings.doubts.iter().for_each(|doubt| remark(doubt));
-    let case = Case { boundary: &boundary, flow, settings: &settings };
+    let parts = parts.map(NonZeroUsize::get);
+    let case = Case { boundary: &boundary, flow, settings: &settings, parts };
     for (name, text) in TEXTS {
         folder.put(name, text(&case).as_bytes())?;
+    }
+    if let (Some(spools), Some(partition)) = (spools, &partition) {
+        let fields = [fields::velocity(&boundary, flow, parts), fields::pressure(&boundary, flow, &settings, parts)];
+        let processors = Processors { mesh, boundary: &boundary, partition, spools };
+        processors.write(&folder, [&fields[0], &fields[1]], progress)?;
     }
     let inlets = if inflow::is_mapped(flow) { InletFaces::of(mesh, &faces, cells)? } else { BTreeMap::new() };
     inflow::write(&folder, &boundary, flow, &inlets)?;

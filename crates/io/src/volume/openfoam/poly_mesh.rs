@@ -5,24 +5,26 @@ use super::boundary::Boundary;
 use super::figures::{Figures, Sample};
 use super::head;
 use super::joined::{CellFaces, Polygon};
+use super::lists::LabelList;
+use super::spools::Spools;
 use crate::file::{Asked, AtomicFile, AtomicFolder};
 use anastomesh_mesh::faces::Faces;
-use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::progress::{Progress, ask};
 use anastomesh_mesh::source::{MeshSource, miscounted};
 use anastomesh_mesh::stacks::Cells;
 use std::collections::BTreeMap;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 
 pub(super) const FILES: [&str; 4] = [POINTS, FACES, OWNER, NEIGHBOUR];
-const POINTS: &str = "constant/polyMesh/points";
-const FACES: &str = "constant/polyMesh/faces";
-const OWNER: &str = "constant/polyMesh/owner";
-const NEIGHBOUR: &str = "constant/polyMesh/neighbour";
+pub(super) const POINTS: &str = "constant/polyMesh/points";
+pub(super) const FACES: &str = "constant/polyMesh/faces";
+pub(super) const OWNER: &str = "constant/polyMesh/owner";
+pub(super) const NEIGHBOUR: &str = "constant/polyMesh/neighbour";
 
 /// Maximum value of a 32-bit label, the default size.
 const LARGEST: u64 = i32::MAX as u64;
 
-/// Writes points, faces, owners and neighbours, and measures the mesh. Inner faces come first in upper-triangular order:
+/// Writes points, faces, owners and neighbours, measures the mesh, and passes its faces on to `processors`. Inner faces come first in upper-triangular order:
 /// by the lower cell, which owns them, then by the other. Those of each patch follow by their cell.
 pub(super) fn write(
     folder: &AtomicFolder,
@@ -30,6 +32,7 @@ pub(super) fn write(
     faces: &Faces,
     cells: Option<&Cells>,
     boundary: &Boundary,
+    mut processors: Option<&mut Spools>,
     progress: &dyn Progress,
 ) -> io::Result<Figures> {
     let count = boundary.inner + boundary.outer;
@@ -49,12 +52,12 @@ pub(super) fn write(
     );
     let mut lists = FaceLists {
         corners: corner_list(folder, &note, boundary, progress)?,
-        owner: label_list(folder, OWNER, &note, count)?,
-        neighbour: label_list(folder, NEIGHBOUR, &note, boundary.inner)?,
+        owner: LabelList::alone(folder.file(OWNER)?, OWNER, &note, count)?,
+        neighbour: LabelList::alone(folder.file(NEIGHBOUR)?, NEIGHBOUR, &note, boundary.inner)?,
     };
     let (mut inner, mut corner) = (0, 0);
-    let places = boundary.patches.iter().map(|p| (p.patch.id, [p.first, p.corners]));
-    let mut places: BTreeMap<i32, [u64; 2]> = places.collect();
+    let places = (0..).zip(&boundary.patches).map(|(i, p)| (p.patch.id, (i, [p.first, p.corners])));
+    let mut places: BTreeMap<i32, (u32, [u64; 2])> = places.collect();
     let mut figures = Figures::default();
     let sample = Sample::of(mesh);
     faces.each_with(
@@ -63,8 +66,11 @@ pub(super) fn write(
             Ok((CellFaces::of(faces, cells), measured))
         },
         |_, (part, measured)| {
-            anastomesh_mesh::progress::ask(progress)?;
+            ask(progress)?;
             figures.extend(measured.unwrap_or_default());
+            if let Some(processors) = processors.as_deref_mut() {
+                processors.put_inner(&part.inner, inner)?;
+            }
             let corners = flattened(part.inner.iter().map(|face| &face.face));
             lists.corners.put(corner, &corners)?;
             lists.owner.put(inner, &part.inner.iter().map(|face| face.cells[0]).collect::<Vec<_>>())?;
@@ -72,7 +78,10 @@ pub(super) fn write(
             inner += part.inner.len() as u64;
             corner += corners.len() as u64;
             for same in part.outer.chunk_by(|a, b| a.patch == b.patch) {
-                let [first, corner] = places.get_mut(&same[0].patch).ok_or_else(miscounted)?;
+                let (patch, [first, corner]) = places.get_mut(&same[0].patch).ok_or_else(miscounted)?;
+                if let Some(processors) = processors.as_deref_mut() {
+                    processors.put_outer(same, *patch, *first)?;
+                }
                 let corners = flattened(same.iter().map(|face| &face.face));
                 lists.corners.put(*corner, &corners)?;
                 lists.owner.put(*first, &same.iter().map(|face| face.cell).collect::<Vec<_>>())?;
@@ -82,7 +91,7 @@ pub(super) fn write(
             Ok(())
         },
     )?;
-    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(LabelList::finish)?;
+    [lists.corners, lists.owner, lists.neighbour].into_iter().try_for_each(|list| list.finish()?.commit())?;
     Ok(figures)
 }
 
@@ -107,54 +116,9 @@ fn write_points(folder: &AtomicFolder, mesh: &dyn MeshSource, progress: &dyn Pro
 
 /// Lists that are written in parallel.
 struct FaceLists {
-    corners: LabelList,
-    owner: LabelList,
-    neighbour: LabelList,
-}
-
-/// Label list in a file with random access.
-struct LabelList {
-    file: AtomicFile,
-    /// Offset of the first label.
-    start: u64,
-    /// End of the last label.
-    end: u64,
-    /// Current file offset.
-    at: u64,
-    /// Bytes of the last labels, kept to use their memory again.
-    bytes: Vec<u8>,
-}
-
-impl LabelList {
-    fn begin(mut file: AtomicFile, labels: u64) -> io::Result<Self> {
-        write!(file, "{labels}\n(")?;
-        let start = file.stream_position()?;
-        Ok(Self { file, start, end: start + 4 * labels, at: start, bytes: Vec::new() })
-    }
-
-    /// Writes consecutive labels from this position in the list.
-    fn put(&mut self, first: u64, labels: &[u32]) -> io::Result<()> {
-        let place = self.start + 4 * first;
-        if place != self.at {
-            self.file.seek(SeekFrom::Start(place))?;
-        }
-        self.bytes.clear();
-        self.bytes.extend(labels.iter().flat_map(|label| label.to_le_bytes()));
-        self.at = place + self.bytes.len() as u64;
-        self.file.write_all(&self.bytes)
-    }
-
-    fn finish(mut self) -> io::Result<()> {
-        self.file.seek(SeekFrom::Start(self.end))?;
-        self.file.write_all(b")\n")?;
-        self.file.commit()
-    }
-}
-
-fn label_list(folder: &AtomicFolder, path: &str, note: &str, faces: u64) -> io::Result<LabelList> {
-    let mut file = folder.file(path)?;
-    file.write_all(head::binary("labelList", path, note).as_bytes())?;
-    LabelList::begin(file, faces)
+    corners: LabelList<AtomicFile>,
+    owner: LabelList<AtomicFile>,
+    neighbour: LabelList<AtomicFile>,
 }
 
 /// Corners of all faces, after the list of each face's offset.
@@ -163,35 +127,12 @@ fn corner_list(
     note: &str,
     boundary: &Boundary,
     progress: &dyn Progress,
-) -> io::Result<LabelList> {
+) -> io::Result<LabelList<AtomicFile>> {
+    ask(progress)?;
     let faces = boundary.inner + boundary.outer;
-    let mut file = folder.file(FACES)?;
-    let out = &mut Asked { out: &mut file, progress };
-    write!(out, "{}{}\n(", head::binary("faceCompactList", FACES, note), faces + 1)?;
-    if let Some(quads) = &boundary.quads {
-        let mut offset = 0;
-        let offsets = quads.vertices().map(|vertices| {
-            offset += vertices;
-            offset
-        });
-        write_labels(out, std::iter::once(0).chain(offsets))?;
-    } else {
-        write_labels(out, (0..=faces as u32).map(|face| 3 * face))?;
+    let (file, sizes) = (folder.file(FACES)?, (faces, boundary.corners));
+    match &boundary.quads {
+        Some(quads) => LabelList::corners(file, (FACES, note), sizes, quads.vertices()),
+        None => LabelList::corners(file, (FACES, note), sizes, (0..faces).map(|_| 3)),
     }
-    out.write_all(b")\n")?;
-    LabelList::begin(file, boundary.corners)
-}
-
-fn write_labels(out: &mut impl Write, labels: impl Iterator<Item = u32>) -> io::Result<()> {
-    /// Number of bytes per write.
-    const AT_A_TIME: usize = 1 << 18;
-    let mut bytes = Vec::with_capacity(AT_A_TIME);
-    for label in labels {
-        bytes.extend_from_slice(&label.to_le_bytes());
-        if bytes.len() >= AT_A_TIME {
-            out.write_all(&bytes)?;
-            bytes.clear();
-        }
-    }
-    out.write_all(&bytes)
 }

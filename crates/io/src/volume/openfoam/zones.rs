@@ -39,13 +39,13 @@ pub(super) fn write(
     let (outer, interfaces) = OuterMesh::of(&volume);
     let faces = Faces::of(&outer)?;
     let boundary = Boundary::of(&outer, &faces, None)?;
-    let figures = poly_mesh::write(folder, &outer, &faces, None, &boundary, progress)?;
+    let figures = poly_mesh::write(folder, &outer, &faces, None, &boundary, None, progress)?;
     let settings = Settings::of(&figures, false, 0.0, false, false);
     settings.doubts.iter().for_each(|doubt| remark(doubt));
     write_cell_zones(folder, &volume, &notes.regions)?;
     write_face_zones(folder, &volume, &faces, &interfaces)?;
     folder.put("constant/polyMesh/boundary", case::boundary(&boundary).as_bytes())?;
-    folder.put("system/decomposeParDict", case::decompose().as_bytes())?;
+    folder.put("system/decomposeParDict", case::decompose(None).as_bytes())?;
     let has_lumen = NamedRegion::id_of(&notes.regions, NamedRegion::LUMEN).is_some();
     for (name, text) in diffusion::texts(&boundary, &figures, has_lumen) {
         folder.put(name, text.as_bytes())?;

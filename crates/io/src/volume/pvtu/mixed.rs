@@ -3,7 +3,7 @@
 use super::folder::PieceFolder;
 use super::order::Reordered;
 use super::plan::Plan;
-use super::write::{Pieces, write_index};
+use super::write::{Extent, Pieces, write_index};
 use crate::file::{Asked, AtomicFile, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::vtu::{MixedGrid, REGION, write_mixed as write_grid};
@@ -69,6 +69,6 @@ pub(in crate::volume) fn write_mixed(
         write_whole(&folder.piece(number), |out| write_grid(&mut Asked { out, progress }, &grid))?;
     }
     let labels = if notes.regions.is_empty() { &["layer"][..] } else { &["layer", REGION] };
-    write_index(&mut index, plan.ends.len(), &folder, pieces, labels)?;
+    write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, labels)?;
     folder.commit(index, path)
 }

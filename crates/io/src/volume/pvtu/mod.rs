@@ -8,6 +8,9 @@ mod error;
 mod folder;
 mod mixed;
 mod order;
+mod parts;
+#[cfg(test)]
+mod parts_tests;
 mod plan;
 mod read;
 #[cfg(test)]
@@ -17,5 +20,6 @@ mod write;
 pub use error::PvtuFault;
 pub(super) use folder::PieceFolder;
 pub(super) use mixed::write_mixed;
+pub(super) use parts::write_parts;
 pub(super) use read::read;
 pub(super) use write::{Pieces, write};

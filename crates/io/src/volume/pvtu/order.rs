@@ -1,12 +1,9 @@
 //! Order of mesh parts for pieces: along the tree of parts that share points. Pieces are ranges of this order and thus
 //! separated at few joints.
 
+use crate::volume::parts::BlockGraph;
 use anastomesh_mesh::source::{FacePiece, LabelPiece, MeshSource, TetPiece};
-use std::collections::VecDeque;
 use std::io;
-
-/// Marks the absence of a part.
-const NONE: u32 = u32::MAX;
 
 /// Mesh with its parts in another order. Points keep their order and numbers.
 pub(super) struct Reordered<'a> {
@@ -20,8 +17,8 @@ impl<'a> Reordered<'a> {
     /// # Errors
     /// The mesh source fails.
     pub(super) fn along_the_tree(mesh: &'a dyn MeshSource) -> io::Result<Self> {
-        let parts = PartGraph::of(mesh)?;
-        let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder());
+        let parts = graph_of(mesh)?;
+        let order = parts.map_or_else(|| (0..mesh.parts()).collect(), |parts| parts.in_preorder(0..mesh.parts()));
         Ok(Self { mesh, order })
     }
 
@@ -76,135 +73,35 @@ impl Joined {
     }
 }
 
-/// Graph of parts, connected if they share points.
-struct PartGraph {
-    neighbors: Vec<Vec<u32>>,
-    tets: Vec<u64>,
-}
-
-impl PartGraph {
-    /// Returns `None` if a part has several blocks, or a block several parts.
-    fn of(mesh: &dyn MeshSource) -> io::Result<Option<Self>> {
-        let mut starts = vec![0_u32];
-        let mut sum = 0;
-        mesh.each_part(
-            |part| Ok(mesh.points(part)?.len() as u32),
-            |count| {
-                sum += count;
-                starts.push(sum);
-                Ok(())
-            },
-        )?;
-        let mut parts = Self { neighbors: vec![Vec::new(); mesh.parts() as usize], tets: Vec::new() };
-        let mut blocks = Vec::with_capacity(parts.neighbors.len());
-        mesh.each_part(
-            |part| Ok(Joined::of(&mesh.tets(part)?, part, &starts)),
-            |Joined { block, tets, owners }| {
-                let part = parts.tets.len() as u32;
-                for other in owners {
-                    parts.neighbors[other as usize].push(part);
-                    parts.neighbors[part as usize].push(other);
-                }
-                parts.tets.push(tets);
-                blocks.push(block);
-                Ok(())
-            },
-        )?;
-        let count = blocks.len();
-        blocks.sort_unstable();
-        blocks.dedup();
-        Ok(Some(parts).filter(|_| blocks.len() == count && blocks.iter().all(Option::is_some)))
-    }
-
-    /// Preorder with small subtrees before large ones. Every cut of this order separates O(log n) joints, as each open
-    /// subtree has at most half the size of its parent.
-    fn in_preorder(&self) -> Vec<u32> {
-        let (outward, parents) = self.spanning_trees();
-        let mut sizes = self.tets.clone();
-        for &part in outward.iter().rev() {
-            let parent = parents[part as usize];
-            if parent != NONE {
-                sizes[parent as usize] += sizes[part as usize];
+/// Graph of parts. `None` if a part has several blocks, or a block several parts.
+fn graph_of(mesh: &dyn MeshSource) -> io::Result<Option<BlockGraph>> {
+    let mut starts = vec![0_u32];
+    let mut sum = 0;
+    mesh.each_part(
+        |part| Ok(mesh.points(part)?.len() as u32),
+        |count| {
+            sum += count;
+            starts.push(sum);
+            Ok(())
+        },
+    )?;
+    let mut parts = BlockGraph { neighbors: vec![Vec::new(); mesh.parts() as usize], sizes: Vec::new() };
+    let mut blocks = Vec::with_capacity(parts.neighbors.len());
+    mesh.each_part(
+        |part| Ok(Joined::of(&mesh.tets(part)?, part, &starts)),
+        |Joined { block, tets, owners }| {
+            let part = parts.sizes.len() as u32;
+            for other in owners {
+                parts.neighbors[other as usize].push(part);
+                parts.neighbors[part as usize].push(other);
             }
-        }
-        let mut children: Vec<Vec<u32>> = vec![Vec::new(); self.tets.len()];
-        let mut pending = Vec::new();
-        for &part in outward.iter().rev() {
-            match parents[part as usize] {
-                NONE => pending.push(part),
-                parent => children[parent as usize].push(part),
-            }
-        }
-        let mut order = Vec::with_capacity(self.tets.len());
-        while let Some(part) = pending.pop() {
-            order.push(part);
-            let own = &mut children[part as usize];
-            // The last item pushed comes first.
-            own.sort_by_key(|&child| std::cmp::Reverse((sizes[child as usize], child)));
-            pending.append(own);
-        }
-        order
-    }
-
-    /// Breadth-first order of the parts from the lowest of each component, with their parents.
-    fn spanning_trees(&self) -> (Vec<u32>, Vec<u32>) {
-        let count = self.tets.len();
-        let (mut order, mut parents, mut seen) = (Vec::with_capacity(count), vec![NONE; count], vec![false; count]);
-        for start in 0..count as u32 {
-            if std::mem::replace(&mut seen[start as usize], true) {
-                continue;
-            }
-            let mut front = VecDeque::from([start]);
-            while let Some(part) = front.pop_front() {
-                order.push(part);
-                for &next in &self.neighbors[part as usize] {
-                    if !std::mem::replace(&mut seen[next as usize], true) {
-                        parents[next as usize] = part;
-                        front.push_back(next);
-                    }
-                }
-            }
-        }
-        (order, parents)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Graph with these joints; all parts have equal size.
-    fn graph(count: usize, joints: &[[u32; 2]]) -> PartGraph {
-        let mut parts = PartGraph { neighbors: vec![Vec::new(); count], tets: vec![1; count] };
-        for &[a, b] in joints {
-            parts.neighbors[a as usize].push(b);
-            parts.neighbors[b as usize].push(a);
-        }
-        parts
-    }
-
-    #[test]
-    fn every_part_comes_once_and_small_branches_first() {
-        assert_eq!(graph(6, &[[0, 1], [0, 2], [1, 3], [1, 4], [0, 5]]).in_preorder(), [0, 2, 5, 1, 3, 4]);
-        assert_eq!(graph(4, &[[2, 3], [3, 2]]).in_preorder(), [0, 1, 2, 3]);
-        // A loop.
-        let mut order = graph(5, &[[0, 1], [1, 2], [2, 3], [3, 4], [4, 0]]).in_preorder();
-        order.sort_unstable();
-        assert_eq!(order, [0, 1, 2, 3, 4]);
-    }
-
-    #[test]
-    fn a_cut_parts_few_joints() {
-        // A full binary tree, with joints numbered after its nodes like connectors after clusters.
-        let nodes = 1023_u32;
-        let joints: Vec<[u32; 2]> =
-            (1..nodes).flat_map(|n| [[(n - 1) / 2, nodes + n - 1], [n, nodes + n - 1]]).collect();
-        let order = graph(2 * nodes as usize - 1, &joints).in_preorder();
-        let mut place = vec![0; order.len()];
-        (0..).zip(&order).for_each(|(i, &part)| place[part as usize] = i);
-        for cut in 0..order.len() {
-            let parted = joints.iter().filter(|j| (place[j[0] as usize] < cut) != (place[j[1] as usize] < cut)).count();
-            assert!(parted <= 20, "{parted} at {cut}");
-        }
-    }
+            parts.sizes.push(tets);
+            blocks.push(block);
+            Ok(())
+        },
+    )?;
+    let count = blocks.len();
+    blocks.sort_unstable();
+    blocks.dedup();
+    Ok(Some(parts).filter(|_| blocks.len() == count && blocks.iter().all(Option::is_some)))
 }

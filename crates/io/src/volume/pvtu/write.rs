@@ -6,7 +6,7 @@ use super::plan::Plan;
 use crate::file::{Asked, AtomicFile, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
-use crate::volume::vtu::{GLOBAL_IDS, Grid, REGION};
+use crate::volume::vtu::{CELL_IDS, GHOSTS, GLOBAL_IDS, Grid, REGION};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::bits::Bits;
@@ -70,21 +70,29 @@ pub(in crate::volume) fn write(
     }
     .write()?;
     let labels = if notes.regions.is_empty() { &[][..] } else { &[REGION] };
-    write_index(&mut index, plan.ends.len(), &folder, pieces, labels)?;
+    write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, labels)?;
     folder.commit(index, path)
 }
 
 /// Approximate memory of a piece: its share of points and faces, plus half for those on its rim.
-fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
+pub(super) fn bytes_of_piece(mesh: &dyn MeshSource, tets: usize) -> usize {
     let counts = mesh.counts();
     let shared = (28 * counts.points + 20 * counts.boundary) as f64 * 1.5 / counts.tets.max(1) as f64;
     ((20.0 + shared) * tets.min(counts.tets.max(1)) as f64) as usize
 }
 
+/// Pieces of an index.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    pub pieces: usize,
+    /// True if the pieces have ghost cells.
+    pub has_ghosts: bool,
+}
+
 /// Writes the index. `labels` are further integers of cells.
 pub(super) fn write_index(
     out: &mut impl Write,
-    pieces: usize,
+    Extent { pieces, has_ghosts }: Extent,
     folder: &PieceFolder,
     how: Pieces,
     labels: &[&'static str],
@@ -94,14 +102,22 @@ pub(super) fn write_index(
     let float = if grid.float32 { "Float32" } else { "Float64" };
     let mut columns = how.values.map_or(&[][..], Beside::columns).to_vec();
     columns.extend(labels.iter().map(|name| Column { name, at_points: false, is_integer: true }));
+    let ghosts = if has_ghosts { format!("<PDataArray type=\"UInt8\" Name=\"{GHOSTS}\"/>\n") } else { String::new() };
+    let (of_cells, cell_ids) = if has_ghosts {
+        let ids = format!("<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{CELL_IDS}\"/>\n");
+        (format!(" GlobalIds=\"{CELL_IDS}\""), ids)
+    } else {
+        (String::new(), String::new())
+    };
     writeln!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"0\">\n\
-         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{}\
+         header_type=\"UInt64\"{compressor}>\n<PUnstructuredGrid GhostLevel=\"{}\">\n\
+         <PPointData GlobalIds=\"{GLOBAL_IDS}\">\n<PDataArray type=\"Int64\" IdType=\"1\" Name=\"{GLOBAL_IDS}\"/>\n{ghosts}{}\
          </PPointData>\n<PPoints>\n<PDataArray type=\"{float}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
-         <PCellData Scalars=\"patch\">\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
-         <PDataArray type=\"Int32\" Name=\"block\"/>\n{}</PCellData>",
+         <PCellData Scalars=\"patch\"{of_cells}>\n<PDataArray type=\"Int32\" Name=\"patch\"/>\n\
+         <PDataArray type=\"Int32\" Name=\"block\"/>\n{ghosts}{cell_ids}{}</PCellData>",
+        u8::from(has_ghosts),
         announced(&columns, true),
         announced(&columns, false)
     )?;
@@ -280,6 +296,7 @@ impl PieceWriter<'_> {
             has_regions: !self.notes.regions.is_empty(),
             global_ids: Some(&piece.ids),
             solver_ids: None,
+            piece: None,
             options: self.grid,
             values: self.values,
         };

@@ -1,6 +1,6 @@
 //! Arrays of an unstructured grid and the sources of their values.
 
-use super::names::{ELEMENT_ID, GLOBAL_IDS, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
+use super::names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
 use crate::volume::content::MeshNotes;
 use crate::vtk_xml::Blocks;
 use anastomesh_mesh::Patch;
@@ -157,6 +157,39 @@ pub(super) fn of_solver<'a>(points: &'a [u32], cells: [&'a [u32]; 2]) -> [ArrayW
     [
         from_one(ArrayLocation::PointData, NODE_ID, vec![points]),
         from_one(ArrayLocation::CellData, ELEMENT_ID, cells.to_vec()),
+    ]
+}
+
+/// Arrays of a piece with ghost cells.
+#[derive(Clone, Copy)]
+pub(in crate::volume) struct PieceArrays<'a> {
+    /// Mark of each point, and of each tetrahedron: 1 for copies. Boundary faces are no copies.
+    pub point_ghosts: &'a [u8],
+    pub tet_ghosts: &'a [u8],
+    /// Numbers in the whole mesh of tetrahedra, and of boundary faces.
+    pub tets: &'a [u32],
+    pub faces: &'a [u32],
+    /// Number of tetrahedra of the whole mesh.
+    pub all_tets: usize,
+}
+
+/// Marks of ghosts, and numbers of cells in the whole mesh. `faces` boundary faces are in the file: all, or none.
+pub(super) fn of_piece(piece: PieceArrays<'_>, faces: usize) -> [ArrayWriter<'_>; 3] {
+    let PieceArrays { point_ghosts, tet_ghosts, tets, faces: face_ids, all_tets } = piece;
+    let cells = tets.len() + faces;
+    let ids = move |out: &mut Blocks| {
+        out.push(tets.len(), |i| u64::from(tets[i]).to_le_bytes())?;
+        out.push(faces, |i| (all_tets as u64 + u64::from(face_ids[i])).to_le_bytes())
+    };
+    let marks = move |out: &mut Blocks| {
+        out.push(tet_ghosts.len(), |i| [tet_ghosts[i]])?;
+        out.push(faces, |_| [0])
+    };
+    let of_points = move |out: &mut Blocks| out.push(point_ghosts.len(), |i| [point_ghosts[i]]);
+    [
+        ArrayWriter::new(ArrayLocation::PointData, GHOSTS, UINT8, point_ghosts.len(), of_points),
+        ArrayWriter::new(ArrayLocation::CellData, CELL_IDS, INT64, cells, ids),
+        ArrayWriter::new(ArrayLocation::CellData, GHOSTS, UINT8, cells, marks),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! VTK file: XML with the array offsets, followed by the arrays.
 
 use super::arrays::{ArrayLocation, ArrayWriter};
-use super::names::GLOBAL_IDS;
+use super::names::{CELL_IDS, GLOBAL_IDS};
 use crate::vtk_xml::{Packing, write_blocks, write_spaces};
 use flate2::Compression;
 use std::fmt::Write as _;
@@ -26,6 +26,9 @@ const SECTIONS: [(ArrayLocation, &str); 5] = [
     (ArrayLocation::Polys, "Polys"),
     (ArrayLocation::CellData, "CellData"),
 ];
+
+/// Arrays of numbers in the whole mesh.
+const IDS: [&str; 2] = [GLOBAL_IDS, CELL_IDS];
 
 /// Array that viewers show first, if present.
 const LABELS: &str = "patch";
@@ -84,8 +87,8 @@ impl File<'_> {
         if arrays.is_empty() {
             return;
         }
-        let has_ids = arrays.iter().any(|(array, _)| array.name == GLOBAL_IDS);
-        let ids = if has_ids { format!(" GlobalIds=\"{GLOBAL_IDS}\"") } else { String::new() };
+        let ids = arrays.iter().map(|(array, _)| array.name).find(|name| IDS.contains(name));
+        let ids = ids.map_or_else(String::new, |name| format!(" GlobalIds=\"{name}\""));
         let has_labels = arrays.iter().any(|(array, _)| array.name == LABELS);
         let labels = if has_labels { format!(" Scalars=\"{LABELS}\"") } else { String::new() };
         let _ = writeln!(text, "<{tag}{labels}{ids}>");
@@ -105,7 +108,7 @@ fn attributes_of(array: &ArrayWriter) -> String {
         _ => String::new(),
     };
     // VTK accepts global ids only in arrays of its id type.
-    let ids = if *name == GLOBAL_IDS { " IdType=\"1\"" } else { "" };
+    let ids = if IDS.contains(name) { " IdType=\"1\"" } else { "" };
     // One component is the default; readers give an explicit one the shape of a column.
     let width = if *components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
     format!("type=\"{kind}\"{ids} Name=\"{name}\"{width}{tuples}")

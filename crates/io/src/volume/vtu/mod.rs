@@ -19,10 +19,11 @@ mod read;
 mod tests;
 mod write;
 
+pub(super) use arrays::PieceArrays;
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
 pub(super) use mixed::{MixedGrid, write_mixed};
-pub(super) use names::{ELEMENT_ID, GLOBAL_IDS, NODE_ID, REGION};
+pub(super) use names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, NODE_ID, REGION};
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub use write::write_boundary;

@@ -32,3 +32,9 @@ pub(in crate::volume) const REGION: &str = "region";
 
 /// Name of the point array with the number of each point in the whole mesh.
 pub(in crate::volume) const GLOBAL_IDS: &str = "GlobalPointIds";
+
+/// Name of the cell array with the number of each cell in the whole mesh, tetrahedra before boundary faces.
+pub(in crate::volume) const CELL_IDS: &str = "GlobalCellIds";
+
+/// Name of VTK's array that marks copies of the cells and points of other pieces.
+pub(in crate::volume) const GHOSTS: &str = "vtkGhostType";

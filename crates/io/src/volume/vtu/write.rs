@@ -1,6 +1,6 @@
 //! Writer of unstructured grids, and of boundaries as poly data.
 
-use super::arrays;
+use super::arrays::{self, PieceArrays};
 use super::file::File;
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
@@ -23,7 +23,8 @@ pub(in crate::volume) fn write(
     values: Option<&dyn Beside>,
 ) -> io::Result<()> {
     let has_regions = !notes.regions.is_empty();
-    Grid { mesh, notes: Some(notes), has_regions, global_ids: None, solver_ids: None, options, values }.write(out)
+    Grid { mesh, notes: Some(notes), has_regions, global_ids: None, solver_ids: None, piece: None, options, values }
+        .write(out)
 }
 
 /// Contents of a file.
@@ -37,6 +38,8 @@ pub(in crate::volume) struct Grid<'a> {
     pub global_ids: Option<&'a [u32]>,
     /// For a region of a mesh: numbers in the whole mesh, by which solvers match regions.
     pub solver_ids: Option<SolverIds<'a>>,
+    /// For a piece with ghost cells: their marks, and numbers in the whole mesh.
+    pub piece: Option<PieceArrays<'a>>,
     pub options: GridOptions,
     /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
@@ -65,6 +68,7 @@ impl Grid<'_> {
         let mut all = self.notes.map_or_else(Vec::new, |notes| arrays::of_fields(mesh.patches(), notes));
         all.extend(self.global_ids.map(arrays::of_ids));
         all.extend(self.solver_ids.iter().flat_map(|ids| arrays::of_solver(ids.points, ids.cells(self.options))));
+        all.extend(self.piece.iter().flat_map(|piece| arrays::of_piece(*piece, mesh.counts().boundary)));
         all.extend(arrays::of_mesh(mesh, self.options.float32, self.has_regions));
         all.extend(self.values.into_iter().flat_map(|values| arrays::of_values(mesh, values)));
         let SourceCounts { points, tets, boundary } = mesh.counts();
