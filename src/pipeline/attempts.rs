@@ -464,7 +464,10 @@ mod tests {
         };
         let plan = MeshPlan::default();
         assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len()]);
-        assert_eq!(fused(&plan, true), [[false; 5].as_slice(), &[false; 5], &[true; RetryStrategy::ALL.len()]].concat());
+        assert_eq!(
+            fused(&plan, true),
+            [[false; 5].as_slice(), &[false; 5], &[true; RetryStrategy::ALL.len()]].concat()
+        );
         assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; RetryStrategy::ALL.len()]);
         let names: Vec<String> =
             attempts(&plan, true, RetryStrategy::Usual).into_iter().map(|attempt| attempt.name).collect();

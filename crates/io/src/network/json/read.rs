@@ -46,7 +46,7 @@ pub(in crate::network) fn read(bytes: &[u8], options: &NetworkOptions) -> Result
         return Ok(svzerod::read(whole, options)?);
     }
     if vessels::is_vessel_list(&whole) {
-        return Ok(vessels::read(&whole)?);
+        return Ok(vessels::read(&whole, options)?);
     }
     let list = |names: &[&str]| names.iter().find_map(|name| whole.get(name)).and_then(Json::as_array);
     let nodes = list(&["nodes"]).ok_or(JsonError::NoList { list: "nodes" })?;

@@ -1,8 +1,9 @@
 //! Meshes of Flows1D0D3D: a list of vertices, and a list of vessels with the points of their axes.
 
-use crate::network::content::{NetworkFile, NetworkNote, NodeNames};
+use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
 use crate::network::polylines::{Polylines, Radii};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::units::counted;
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::Value;
@@ -37,8 +38,8 @@ pub enum VesselListError {
     },
     /// A vessel has fewer than two points.
     #[error(
-        "vessel {vessel} has {points} points in 'embedded_coordinates', and a mesh needs at least 2: a model without positions \
-         has no lumen"
+        "vessel {vessel} has {} in 'embedded_coordinates', and a mesh needs at least 2: a model without positions has no lumen",
+        counted(*points, "point")
     )]
     Points {
         /// Id of the vessel.
@@ -47,7 +48,10 @@ pub enum VesselListError {
         points: usize,
     },
     /// A vessel has another number of radii than of points.
-    #[error("vessel {vessel} has {points} points and {radii} radii: give one radius per point in 'radii', or 'radius'")]
+    #[error(
+        "vessel {vessel} has {}, and the list 'radii' has length {radii}: give one radius per point, or 'radius'",
+        counted(*points, "point")
+    )]
     Radii {
         /// Id of the vessel.
         vessel: i64,
@@ -55,6 +59,12 @@ pub enum VesselListError {
         points: usize,
         /// Number of radii.
         radii: usize,
+    },
+    /// Values of nodes are requested.
+    #[error("lists of vessels have no node arrays, so '{wanted}' does not exist; node arrays: none")]
+    NoNodeArrays {
+        /// Requested name.
+        wanted: String,
     },
     /// The number of nodes exceeds the index range.
     #[error("too many nodes for 32-bit indices ({})", u32::MAX)]
@@ -106,7 +116,10 @@ pub(super) fn is_vessel_list(whole: &Value) -> bool {
 
 /// Reads vertices and vessels. The widest vessel at a vertex sets its position. Other vessels that end elsewhere are
 /// joined to it by an edge.
-pub(super) fn read(whole: &Value) -> Result<NetworkFile, VesselListError> {
+pub(super) fn read(whole: &Value, options: &NetworkOptions) -> Result<NetworkFile, VesselListError> {
+    if let Some(wanted) = &options.node_array {
+        return Err(VesselListError::NoNodeArrays { wanted: wanted.clone() });
+    }
     let vertices: Vec<Vertex> = entries(whole, "vertices")?;
     let vessels: Vec<Vessel> = entries(whole, "vessels")?;
     let mut rows = FxHashMap::default();
