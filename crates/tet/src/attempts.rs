@@ -126,8 +126,7 @@ pub(super) fn recover_rest(
     let filled = filled(None, &RecoveryStrategy::GIVEN);
     let mut attempts: Vec<Attempt> = Vec::new();
     if edges_turned {
-        // With points on both sides, a third as many parts stay missing, and the planes have more clearance.
-        attempts.extend(filled_thick.into_iter().chain(turned.map(thick)));
+        attempts.extend(turned.map(thick).into_iter().chain(filled_thick));
         attempts.extend([given, filled]);
     } else {
         attempts.push(given);
