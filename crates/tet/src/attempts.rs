@@ -5,7 +5,8 @@ use super::delaunay;
 use super::error::TetError;
 use super::recover::exact::{ExactRecovery, Missing, RecoveryStrategy};
 use super::recover::{
-    self, RecoverySummary, Rule, coarse_height, flat_height, flat_height_in_single, lies_in_planes, lies_turned,
+    self, Priority, RecoverySummary, Rule, coarse_height, flat_height, flat_height_in_single, lies_in_planes,
+    lies_turned,
 };
 use super::request::Request;
 use super::sized;
@@ -42,6 +43,12 @@ const POOR: f64 = 0.75;
 /// Consecutive strategies that help little, after which the next start is tried.
 const MAX_POOR: u32 = 2;
 
+/// Maximum parts left for a repetition of the start: a constant, or this fraction of the parts that flips left.
+const FEWER: (usize, f64) = (64, 0.002);
+
+/// Maximum repetitions of a start with the parts first that it has left.
+const MAX_RESTARTS: u32 = 3;
+
 /// Budget, relative to the first round, from which all strategies are tried whatever the gain.
 const THOROUGH: u64 = 64;
 
@@ -62,6 +69,10 @@ struct Attempt<'a> {
     filled: bool,
     /// True if strategies have helped little.
     abandoned: bool,
+    /// Repetitions with the failed parts first.
+    restarts: u32,
+    /// Parts that this start has left before.
+    failed: Priority,
     /// Complex, missing edges and triangles, and summary before any strategy.
     origin: Option<Origin>,
 }
@@ -171,6 +182,8 @@ impl<'a> Attempt<'a> {
             passes: None,
             filled: false,
             abandoned: false,
+            restarts: 0,
+            failed: Priority::default(),
             origin: Some(origin),
         }
     }
@@ -183,7 +196,18 @@ impl<'a> Attempt<'a> {
     /// Starts with the Delaunay complex.
     fn fresh(flat: Option<f64>, ways: &'static [RecoveryStrategy]) -> Self {
         let summary = RecoverySummary::default();
-        Self { flat, ways, recovery: None, summary, passes: None, filled: false, abandoned: false, origin: None }
+        Self {
+            flat,
+            ways,
+            recovery: None,
+            summary,
+            passes: None,
+            filled: false,
+            abandoned: false,
+            restarts: 0,
+            failed: Priority::default(),
+            origin: None,
+        }
     }
 
     /// Returns to the complex left by flips.
@@ -206,11 +230,12 @@ impl<'a> Attempt<'a> {
         self.missing() as f64 > STALLED * before as f64
     }
 
-    /// True if strategies have recovered almost all parts that flips left.
-    fn is_nearly_done(&self) -> bool {
+    /// True if strategies have recovered almost all parts that flips left: no more are missing than a constant, or this
+    /// fraction.
+    fn leaves(&self, (constant, fraction): (usize, f64)) -> bool {
         let Some(origin) = &self.origin else { return false };
-        let share = FEW.1 * (origin.edges.len() + origin.triangles.len()) as f64;
-        self.missing() <= FEW.0.max(share as usize)
+        let share = fraction * (origin.edges.len() + origin.triangles.len()) as f64;
+        self.missing() <= constant.max(share as usize)
     }
 
     /// Tries all strategies with `share` times the operations of the first round. If few parts are left, larger budgets
@@ -225,10 +250,40 @@ impl<'a> Attempt<'a> {
         let mut before = usize::MAX;
         for further in FURTHER {
             let done = self.repeat(r, points, share * further, effort)?;
-            if done.is_some() || effort.left == 0 || !self.is_nearly_done() || self.has_stalled(before) {
+            if done.is_some() || effort.left == 0 || !self.leaves(FEW) || self.has_stalled(before) {
                 return Ok(done);
             }
+            if let Some(done) = self.restart(r, points, share * further, effort)? {
+                return Ok(Some(done));
+            }
             before = self.missing();
+        }
+        Ok(None)
+    }
+
+    /// Repeats a nearly successful start. What it left comes first, while nothing is in the way.
+    fn restart(
+        &mut self,
+        r: &Request<'a>,
+        points: &[Point3],
+        share: u64,
+        effort: &mut Effort,
+    ) -> Result<Option<Recovered>, TetError> {
+        while self.restarts < MAX_RESTARTS && self.leaves(FEWER) && effort.left > 0 {
+            self.restarts += 1;
+            let Some(recovery) = &self.recovery else { break };
+            let mut failed = self.failed.clone();
+            failed.add(recovery.missing_parts());
+            let Self { flat, ways, passes, filled, restarts, .. } = *self;
+            let mut again = Self { passes, filled, restarts, failed, ..Self::fresh(flat, ways) };
+            let done = again.repeat(r, points, share, effort)?;
+            if done.is_some() {
+                return Ok(done);
+            }
+            if again.missing() >= self.missing() {
+                break;
+            }
+            *self = again;
         }
         Ok(None)
     }
@@ -333,14 +388,23 @@ impl<'a> Attempt<'a> {
         }
         let mut complex = delaunay::delaunay_watched(&points, r.watch)?;
         let rule = self.flat.map_or(Rule::Positive, Rule::Thick);
-        let flips = (rule, self.passes.unwrap_or(recover::MAX_FLIP_PASSES));
+        let flips = (rule, self.passes.unwrap_or(recover::MAX_FLIP_PASSES), &self.failed);
         match recover::recover_with(&mut complex, r.surface, r.edges, flips, r.watch) {
             Ok(summary) => Ok(Some((complex, summary))),
             Err(TetError::NotRecovered { edges, triangles }) => {
                 let missing = Missing { edges: &edges, triangles: &triangles };
                 let flat = self.flat.unwrap_or(flat_height(&r.surface.points));
-                let Self { ways, flat: own, passes, filled, .. } = *self;
-                *self = Self { ways, flat: own, passes, filled, ..Self::given(r, given, complex, missing, flat) };
+                let Self { ways, flat: own, passes, filled, restarts, .. } = *self;
+                let failed = std::mem::take(&mut self.failed);
+                *self = Self {
+                    ways,
+                    flat: own,
+                    passes,
+                    filled,
+                    restarts,
+                    failed,
+                    ..Self::given(r, given, complex, missing, flat)
+                };
                 Ok(None)
             }
             Err(error) => Err(error),

@@ -13,6 +13,7 @@ pub(super) mod exact;
 mod flat;
 mod journal;
 mod march;
+mod priority;
 mod removal;
 mod rule;
 mod steiner;
@@ -31,6 +32,7 @@ use anastomesh_mesh::budget::Stop;
 use cavity::Cavity;
 use journal::Journal;
 use march::{Crossing, crossings, piercing_edges};
+pub(super) use priority::Priority;
 pub(super) use removal::remove_steiner_points;
 pub(super) use rule::{Rule, coarse_height, flat_height, flat_height_in_single};
 use rustc_hash::FxHashMap;
@@ -87,18 +89,20 @@ pub(super) fn recover(
     rule: Rule,
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
-    recover_with(c, surface, edges, (rule, MAX_FLIP_PASSES), watch)
+    recover_with(c, surface, edges, (rule, MAX_FLIP_PASSES, &Priority::default()), watch)
 }
 
-/// As [`recover`], with at most `passes` over the missing edges. A single one is followed by no Steiner points.
+/// As [`recover`], with at most `passes` over the missing edges, those with priority first. A single pass is followed by
+/// no Steiner points.
 pub(super) fn recover_with(
     c: &mut Complex,
     surface: &TriMesh,
     edges: &SurfaceEdges,
-    (rule, passes): (Rule, u32),
+    (rule, passes, priority): (Rule, u32, &Priority),
     watch: &Watch,
 ) -> Result<RecoverySummary, TetError> {
     let (mut lost_edges, mut lost_faces) = survey(c, surface, edges);
+    priority.sort(&mut lost_edges, &mut lost_faces);
     let mut r = Recovery::new(c, surface, (edges, rule), watch);
     r.passes = passes;
     let mut summary = RecoverySummary {

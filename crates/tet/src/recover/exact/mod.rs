@@ -85,6 +85,11 @@ impl<'a> ExactRecovery<'a> {
         self.start.edges.len() + self.start.triangles.len()
     }
 
+    /// Missing edges and triangles.
+    pub(crate) fn missing_parts(&self) -> Missing<'_> {
+        Missing { edges: &self.start.edges, triangles: &self.start.triangles }
+    }
+
     /// Complex with the parts recovered so far, and the number of Steiner points made.
     pub(crate) fn into_complex(self) -> (Complex, usize) {
         (self.start.push.s.c, self.start.made)
