@@ -15,8 +15,8 @@ pub struct FormatArgs {
     /// Write the prisms and pyramids of layers as whole cells, with their layer as cell data `layer` (VTU and PVTU), or without (MSH)
     #[arg(long)]
     pub prisms: bool,
-    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders of an OpenFOAM case (.foam), N pieces
-    /// with ghost cells (.pvtu), or partitions with ghost cells (.msh)
+    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders (.foam), pieces (.pvtu) or partitions
+    /// (.msh) with ghost cells
     #[arg(long, value_name = "N")]
     pub parts: Option<NonZeroUsize>,
 }

@@ -24,8 +24,8 @@ pub struct Args {
     /// .neigh), .npyd (folder of `NumPy` arrays); `-` for standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders of an OpenFOAM case (.foam), N pieces
-    /// with ghost cells (.pvtu), or partitions with ghost cells (.msh)
+    /// Divide the mesh into N balanced parts for parallel solvers: `processor` folders (.foam), pieces (.pvtu) or partitions
+    /// (.msh) with ghost cells
     #[arg(long, value_name = "N")]
     pub parts: Option<NonZeroUsize>,
     /// Format of the input, overriding its extension

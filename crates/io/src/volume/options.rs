@@ -19,8 +19,8 @@ pub struct WriteOptions<'a> {
     pub values: Option<&'a dyn Beside>,
     /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU, PVTU and MSH only, without values.
     pub prisms: bool,
-    /// Number of parts for parallel solvers: folders of processors beside an `OpenFOAM` mesh, exactly so many pieces of a PVTU
-    /// mesh, and partitions of an MSH 4.1 mesh. Other formats have none ([`PartsError`](super::PartsError)).
+    /// Number of parts for parallel solvers: folders of processors beside an `OpenFOAM` mesh, pieces of a PVTU mesh, and
+    /// partitions of an MSH 4.1 mesh. Other formats have none ([`PartsError`](super::PartsError)).
     pub parts: Option<NonZeroUsize>,
     /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
     pub remark: Option<&'a dyn Fn(&str)>,

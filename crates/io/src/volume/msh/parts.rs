@@ -17,8 +17,8 @@ use std::num::NonZeroUsize;
 /// Entity of the undivided volume.
 const VOLUME: i32 = 1;
 
-/// Writes a mesh as MSH 4.1 in `parts` balanced partitions, each with a layer of ghost cells: the tetrahedra of other
-/// partitions that share a point with it. Node and element tags are those of the undivided mesh.
+/// Writes a mesh as MSH 4.1 in `parts` balanced partitions. Each has a layer of ghost cells: the tetrahedra of others that
+/// share a point with it. Node and element tags are those of the undivided mesh.
 ///
 /// One part is in memory at a time, 4 bytes per point of the mesh, and what [`write`](super::write) needs.
 ///

@@ -102,7 +102,7 @@ fn is_ours(name: &str) -> bool {
 /// programs need. Their faces are first stored in a temporary file, 36 bytes each.
 ///
 /// # Errors
-/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary; `PartsError`
+/// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary. `PartsError`
 /// if there are more parts than cells, or the mesh has regions.
 pub(super) fn write(
     path: &Path,

@@ -41,8 +41,8 @@ pub(super) struct Processors<'a> {
 type Places = BTreeMap<FaceList, [u64; 2]>;
 
 impl Processors<'_> {
-    /// Writes the folders, one after the other. Memory holds a bit per point of the mesh and 4 bytes per point of a part; with
-    /// layers also a byte per face of it.
+    /// Writes the folders, one after the other. Memory holds a bit per point of the mesh and 4 bytes per point of a part.
+    /// With layers it also holds a byte per face of the part.
     ///
     /// # Errors
     /// The operating system or the mesh source fails.

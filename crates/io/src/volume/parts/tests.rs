@@ -65,7 +65,7 @@ fn cuts_lie_between_blocks_if_their_ends_are_near() {
 
 #[test]
 fn a_part_of_a_tube_is_connected() {
-    // Along the curve, a tube is cut across.
+    // A tube is cut across.
     let mesh = tube_in_blocks(usize::MAX);
     let partition = divided(&mesh, 4);
     let mut lookup = partition.lookup();

@@ -17,14 +17,14 @@ use std::path::Path;
 /// Value of `vtkGhostType` for copies of cells and points of other pieces.
 const DUPLICATE: u8 = 1;
 
-/// Writes a mesh in `parts` balanced pieces, like [`write`](super::write), each with a layer of ghost cells: copies of the
-/// tetrahedra of other pieces that share a point with it. `vtkGhostType` marks them, and the points of which another piece
+/// Writes a mesh in `parts` balanced pieces, like [`write`](super::write). Each has a layer of ghost cells: copies of the
+/// tetrahedra of others that share a point with it. `vtkGhostType` marks them, and the points of which another piece
 /// has the original. Cells have the numbers `GlobalCellIds`, tetrahedra before boundary faces.
 ///
 /// One piece is in memory at a time, and 4 bytes per point of the mesh.
 ///
 /// # Errors
-/// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point; `PartsError` if there are
+/// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point. `PartsError` if there are
 /// more parts than cells, or a part of a mesh that is not in memory exceeds `pieces.memory`.
 pub(in crate::volume) fn write_parts(
     path: &Path,
