@@ -1,4 +1,4 @@
-//! Meshes of Flows1D0D3D: a list of vertices, and a list of vessels with the points of their axes.
+//! Meshes of `Flows1D0D3D`: a list of vertices, and a list of vessels with the points of their axes.
 
 use crate::network::content::{NetworkFile, NetworkNote, NetworkOptions, NodeNames};
 use crate::network::polylines::{Polylines, Radii};
@@ -107,7 +107,7 @@ impl Vessel {
     }
 }
 
-/// True if a JSON object is a mesh of Flows1D0D3D.
+/// True if a JSON object is a mesh of `Flows1D0D3D`.
 pub(super) fn is_vessel_list(whole: &Value) -> bool {
     let list = |name| whole.get(name).and_then(Value::as_array);
     list("vertices").is_some()

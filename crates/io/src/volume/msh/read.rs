@@ -30,7 +30,7 @@ pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, MshFault> {
             "PhysicalNames" => parts.read_names(&mut cursor)?,
             "Entities" => parts.read_entities(&mut cursor, false)?,
             "PartitionedEntities" => {
-                parts.read_ghost_entities(&mut cursor)?;
+                skip_ghost_entities(&mut cursor)?;
                 parts.read_entities(&mut cursor, true)?;
             }
             "Nodes" if version == Version::Two => parts.read_node_list(&mut cursor)?,
@@ -90,15 +90,6 @@ impl MshSections {
         Ok(())
     }
 
-    /// Skips the number of partitions and the entities of ghost cells.
-    fn read_ghost_entities(&mut self, cursor: &mut MshCursor) -> Result<(), MshFault> {
-        let [_partitions, ghosts]: [u64; 2] = cursor.sizes()?;
-        for _ in 0..ghosts {
-            (cursor.int()?, cursor.int()?);
-        }
-        Ok(())
-    }
-
     /// Reads the groups of entities. Partitioned ones also have a parent and a list of partitions.
     fn read_entities(&mut self, cursor: &mut MshCursor, is_partitioned: bool) -> Result<(), MshFault> {
         let counts: [u64; 4] = cursor.sizes()?;
@@ -106,7 +97,8 @@ impl MshSections {
             for _ in 0..count {
                 let tag = cursor.int()?;
                 if is_partitioned {
-                    (cursor.int()?, cursor.int()?);
+                    cursor.int()?;
+                    cursor.int()?;
                     for _ in 0..cursor.size()? {
                         cursor.int()?;
                     }
@@ -318,4 +310,14 @@ impl MshSections {
         let patch = |id| Patch { id, name: name(id).unwrap_or_else(|| unnamed(id)), cap: cap(id) };
         ids.into_iter().map(patch).collect()
     }
+}
+
+/// Skips the number of partitions and the entities of ghost cells.
+fn skip_ghost_entities(cursor: &mut MshCursor) -> Result<(), MshFault> {
+    let [_, ghosts]: [u64; 2] = cursor.sizes()?;
+    for _ in 0..ghosts {
+        cursor.int()?;
+        cursor.int()?;
+    }
+    Ok(())
 }

@@ -65,7 +65,9 @@ fn check(case: &Path, parts: usize) -> usize {
             assert_eq!(whole.points[id as usize], *point);
         }
         assert!(cells.is_sorted() && points.is_sorted() && points.len() == own.points.len());
-        cells.iter().for_each(|&cell| seen_cells[cell as usize] += 1);
+        for cell in &cells {
+            seen_cells[*cell as usize] += 1;
+        }
         let inner: Vec<_> = own.owner.iter().zip(&own.neighbour).collect();
         assert!(inner.is_sorted() && inner.iter().all(|(a, b)| a < b), "upper-triangular");
         let names: Vec<&str> = own.patches.iter().map(|patch| &*patch.0).collect();

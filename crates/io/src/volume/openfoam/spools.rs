@@ -89,7 +89,7 @@ pub(super) struct Spools<'a> {
     /// Length of the file.
     end: u64,
     lookup: Lookup<'a>,
-    spools: Vec<Spool>,
+    parts: Vec<Spool>,
     /// Bytes after which a buffer is written.
     limit: usize,
 }
@@ -98,9 +98,9 @@ impl<'a> Spools<'a> {
     /// Creates the file on the disk of `beside`.
     pub(super) fn new(partition: &'a Partition, beside: &Path) -> io::Result<Self> {
         let folder = beside.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let spools = (0..partition.parts()).map(|_| Spool::default()).collect();
+        let parts = (0..partition.parts()).map(|_| Spool::default()).collect();
         let limit = (BUFFERS / partition.parts()).clamp(1 << 14, 1 << 20);
-        Ok(Self { file: tempfile::tempfile_in(folder)?, end: 0, lookup: partition.lookup(), spools, limit })
+        Ok(Self { file: tempfile::tempfile_in(folder)?, end: 0, lookup: partition.lookup(), parts, limit })
     }
 
     /// Adds faces between cells, numbered from `first`.
@@ -133,7 +133,7 @@ impl<'a> Spools<'a> {
     }
 
     fn put(&mut self, part: u32, face: ProcessorFace) -> io::Result<()> {
-        let spool = &mut self.spools[part as usize];
+        let spool = &mut self.parts[part as usize];
         let [faces, corners] = spool.sizes.entry(face.list).or_default();
         (*faces, *corners) = (*faces + 1, *corners + face.vertices().len() as u64);
         spool.buffer.extend(face.to_words().into_iter().flat_map(u32::to_le_bytes));
@@ -148,12 +148,12 @@ impl<'a> Spools<'a> {
 
     /// Sizes of the lists of a processor.
     pub(super) fn sizes(&self, part: u32) -> &ListSizes {
-        &self.spools[part as usize].sizes
+        &self.parts[part as usize].sizes
     }
 
     /// Passes on the faces of a processor in batches, in the order of the undivided mesh.
     pub(super) fn each(&self, part: u32, mut each: impl FnMut(Vec<ProcessorFace>) -> io::Result<()>) -> io::Result<()> {
-        let spool = &self.spools[part as usize];
+        let spool = &self.parts[part as usize];
         let mut file = &self.file;
         let mut bytes = Vec::new();
         for &(start, length) in &spool.chunks {

@@ -364,7 +364,9 @@ fn sums_of(mesh: &dyn MeshSource, part: u32) -> io::Result<Vec<RunSums>> {
         }
         each_corners(mesh, tets, |corners| {
             sum.centre += centre_of(corners);
-            corners.iter().for_each(|corner| sum.bounds.include(corner));
+            for corner in corners {
+                sum.bounds.include(corner);
+            }
         })?;
         sums.push(sum);
     }
@@ -425,7 +427,9 @@ fn divided(
     let mut rest = &sites[..];
     for (piece, size) in (0..).zip(sizes) {
         let (own, after) = rest.split_at(size);
-        own.iter().for_each(|site| order[site.cell as usize] = piece);
+        for site in own {
+            order[site.cell as usize] = piece;
+        }
         rest = after;
     }
     let mut next: Vec<u32> = pieces.iter().map(|piece| piece.start).collect();

@@ -31,7 +31,7 @@ pub(in crate::volume) struct Shared {
     /// Further parts of shared points, in ascending order.
     others: Vec<(u32, u32)>,
     /// Points of several parts.
-    shared: Bits,
+    common: Bits,
     /// Parts of tetrahedra, by their faces with shared points only.
     rim: FxHashMap<[u32; 3], u32>,
     /// Ascending by part and tetrahedron.
@@ -89,7 +89,7 @@ impl Shared {
         for &(v, _) in &others {
             points.insert(v);
         }
-        let mut shared = Self { owners, others, shared: points, rim: FxHashMap::default(), ghosts: Vec::new() };
+        let mut shared = Self { owners, others, common: points, rim: FxHashMap::default(), ghosts: Vec::new() };
         each_part_of_tets(mesh, partition, cells, |piece, first, parts| {
             for (i, (tet, &part)) in piece.tets.iter().zip(parts).enumerate() {
                 let block = piece.blocks.get(i).copied().unwrap_or(0);
@@ -104,7 +104,7 @@ impl Shared {
     /// Adds the copies of a tetrahedron to other parts.
     fn add_ghosts(&mut self, own: Ghost) {
         let Ghost { part, vertices, .. } = own;
-        let count = vertices.iter().filter(|&&v| self.shared.has(v)).count();
+        let count = vertices.iter().filter(|&&v| self.common.has(v)).count();
         if count == 0 {
             return;
         }
@@ -114,7 +114,7 @@ impl Shared {
         self.ghosts.extend(parts.into_iter().map(|part| Ghost { part, ..own }));
         if count >= 3 {
             let faces = TET_FACES.map(|face| face.map(|i| vertices[i]));
-            let faces = faces.iter().filter(|face| face.iter().all(|&v| self.shared.has(v)));
+            let faces = faces.iter().filter(|face| face.iter().all(|&v| self.common.has(v)));
             let keys: Vec<[u32; 3]> = faces.map(|face| face_key(*face)).collect();
             self.rim.extend(keys.into_iter().map(|key| (key, part)));
         }
@@ -135,7 +135,7 @@ impl Shared {
 
     /// Part of the tetrahedron under a boundary face; the first one for a face without a tetrahedron.
     pub(in crate::volume) fn part_of_face(&self, face: [u32; 3]) -> u32 {
-        let inside = face.into_iter().find(|&v| !self.shared.has(v));
+        let inside = face.into_iter().find(|&v| !self.common.has(v));
         let of_rim = || self.rim.get(&face_key(face)).copied();
         inside.map_or_else(of_rim, |v| self.owner(v)).unwrap_or(0)
     }

@@ -52,12 +52,11 @@ fn check(folder: &Path, volume: &VolumeMesh, parts: usize) {
             let size = if number < volume.mesh.tets.len() as i64 { 4 } else { 3 };
             let vertices: Vec<i64> = corners[at..at + size].iter().map(|&v| ids[v as usize]).collect();
             at += size;
-            match volume.mesh.tets.get(number as usize) {
-                Some(tet) => assert_eq!(vertices, tet.map(i64::from)),
-                None => {
-                    let face = volume.boundary[number as usize - volume.mesh.tets.len()];
-                    assert_eq!(vertices, face.map(i64::from));
-                }
+            if let Some(tet) = volume.mesh.tets.get(number as usize) {
+                assert_eq!(vertices, tet.map(i64::from));
+            } else {
+                let face = volume.boundary[number as usize - volume.mesh.tets.len()];
+                assert_eq!(vertices, face.map(i64::from));
             }
             if mark == 0 {
                 originals.push(number);
