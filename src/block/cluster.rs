@@ -236,10 +236,12 @@ fn cluster_surface(
     let mut closed_gaps = Vec::new();
     if handles > loops && params.close_gaps {
         let webs = webs(&wall.mesh, cluster, watch).map_err(stopped)?;
-        tubes.to_mut().extend(webs.tubes);
-        closed_gaps = webs.gaps;
-        wall = make(&tubes)?;
-        [handles, loops] = count(&wall)?;
+        if !webs.gaps.is_empty() {
+            tubes.to_mut().extend(webs.tubes);
+            closed_gaps = webs.gaps;
+            wall = make(&tubes)?;
+            [handles, loops] = count(&wall)?;
+        }
     }
     if handles != loops && !params.allow_fused {
         return Err(BlockError::Genus { cluster: id, handles, loops });

@@ -22,6 +22,8 @@ const STEP: f64 = 0.5;
 const MOST_ROWS: usize = 64;
 /// Maximum number of pairs of vessels examined in a cluster.
 const MOST_PAIRS: usize = 4096;
+/// Maximum number of pairs of close vessels tested in a cluster.
+const MOST_TESTED: usize = 1 << 20;
 
 /// Tubes that close narrow gaps, and the place of each gap.
 #[derive(Debug, Default)]
@@ -60,8 +62,12 @@ fn touching(tubes: &[Tube]) -> Vec<([u32; 2], [Point3; 2], f64)> {
         let reach = NEAR * tube.max_radius();
         Aabb::of_points([&tube.a, &tube.b]).grown(reach)
     });
-    let mut found = Vec::new();
+    let (mut found, mut tested) = (Vec::new(), 0);
     Bvh::of(boxes.collect::<Vec<Aabb>>()).self_pairs(|i, j| {
+        tested += 1;
+        if tested > MOST_TESTED {
+            return;
+        }
         let [first, second] = [i, j].map(|k| &tubes[k as usize]);
         if [first.a, first.b].iter().any(|p| [second.a, second.b].contains(p)) {
             return;
