@@ -174,18 +174,7 @@ impl<'a> Attempt<'a> {
         let (edges, triangles) = (missing.edges.to_vec(), missing.triangles.to_vec());
         let origin = Origin { complex: complex.clone(), edges, triangles, summary: summary.clone() };
         let recovery = Some(ExactRecovery::new(complex, (r.surface, r.edges), missing, flat));
-        Self {
-            flat: None,
-            ways: &RecoveryStrategy::GIVEN,
-            recovery,
-            summary,
-            passes: None,
-            filled: false,
-            abandoned: false,
-            restarts: 0,
-            failed: Priority::default(),
-            origin: Some(origin),
-        }
+        Self { recovery, summary, origin: Some(origin), ..Self::fresh(None, &RecoveryStrategy::GIVEN) }
     }
 
     /// Starts with flips that make nothing thinner than `flat`.
