@@ -12,7 +12,7 @@ pub(super) struct Graph<'a> {
     /// End nodes of each tube.
     pub ends: Vec<[u32; 2]>,
     /// Tubes at each node.
-    beside: Vec<Vec<u32>>,
+    pub beside: Vec<Vec<u32>>,
     /// Tubes that close a loop, one for each independent loop.
     pub closing: Vec<u32>,
 }
@@ -81,8 +81,8 @@ impl<'a> Graph<'a> {
             let mut place = to;
             let mut way = Vec::new();
             for tube in if from == to { Vec::new() } else { self.way(from, to, pair[0])? } {
-                let Tube { a, b, ra, rb } = self.tubes[tube as usize];
-                way.extend(if self.ends[tube as usize][1] == place { [(b, rb), (a, ra)] } else { [(a, ra), (b, rb)] });
+                let Tube { a, b, ra, rb } = self.from(tube, place);
+                way.extend([(a, ra), (b, rb)]);
                 place = self.other(tube, place);
             }
             course.extend(way.into_iter().rev());
@@ -91,6 +91,41 @@ impl<'a> Graph<'a> {
         };
         let all = ends[0].iter().flat_map(|&from| ends[1].map(|to| (from, to)));
         all.filter_map(|(from, to)| between(from, to)).min_by(|p, q| p.length().total_cmp(&q.length()))
+    }
+
+    /// Course from a point on one vessel of a node to a point on another. Both are as far from the node as the shorter vessel is
+    /// long, at most by `limit`.
+    pub(super) fn fork(&self, tubes: [u32; 2], node: u32, limit: f64) -> Course {
+        let [first, second] = tubes.map(|tube| self.vessel(tube, node));
+        let length = first.length().min(second.length()).min(limit);
+        let mut points = first.until(length);
+        points.reverse();
+        points.extend(&second.until(length)[1..]);
+        Course::new(points)
+    }
+
+    /// Vessel from a node up to the next node without exactly two tubes.
+    fn vessel(&self, mut tube: u32, node: u32) -> Course {
+        let mut place = node;
+        let start = self.from(tube, node);
+        let mut points = vec![(start.a, start.ra)];
+        loop {
+            let piece = self.from(tube, place);
+            points.push((piece.b, piece.rb));
+            place = self.other(tube, place);
+            let beside = &self.beside[place as usize];
+            // A ring ends where it began.
+            if beside.len() != 2 || place == node {
+                return Course::new(points);
+            }
+            tube = beside[usize::from(beside[0] == tube)];
+        }
+    }
+
+    /// A tube, from one of its end nodes.
+    pub(super) fn from(&self, tube: u32, node: u32) -> Tube {
+        let Tube { a, b, ra, rb } = self.tubes[tube as usize];
+        if self.ends[tube as usize][0] == node { Tube { a, b, ra, rb } } else { Tube { a: b, b: a, ra: rb, rb: ra } }
     }
 
     fn other(&self, tube: u32, place: u32) -> u32 {
@@ -116,6 +151,14 @@ impl Course {
 
     pub(super) fn length(&self) -> f64 {
         self.along[self.along.len() - 1]
+    }
+
+    /// Points up to a distance from the start.
+    fn until(&self, distance: f64) -> Vec<(Point3, f64)> {
+        let inner = self.along.partition_point(|&a| a < distance).max(1);
+        let mut points = self.points[..inner].to_vec();
+        points.push(self.at(distance));
+        points
     }
 
     /// Point and radius at a distance from the start.

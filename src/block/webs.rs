@@ -1,5 +1,8 @@
 //! Webs: narrow gaps between vessels of a cluster that touch beyond a bifurcation. Such a gap is a tunnel through the
 //! wall, which then has a handle that no loop of the vessels explains. A tube in the gap closes it.
+//!
+//! In the crotch of a narrow bifurcation, the vessels separate so slowly that the wall may part, join and part again where the
+//! gap is about as wide as a voxel.
 
 use super::faithful::WallSearch;
 use super::graph::{Course, Graph};
@@ -15,11 +18,19 @@ const NEAR: f64 = 1.3;
 const FAR: f64 = 6.0;
 /// Maximum width of a gap, in radii of the wider vessel beside it.
 const WIDEST: f64 = 1.0;
+/// Maximum length of a crotch, in radii at its bifurcation.
+const CROTCH_LENGTH: f64 = 60.0;
+/// Minimum cosine of the angle of a crotch.
+const CROTCH_COSINE: f64 = 0.8;
 /// Overlap of a web with the vessels on both sides, and distance of its points, in radii of the thinner vessel.
 const OVERLAP: f64 = 0.35;
-const STEP: f64 = 0.5;
+const STEP: f64 = 0.1;
+/// Number of points of a web beyond the gap, on both sides.
+const BEYOND: usize = 5;
+/// Number of points of a web where the wall begins to part two vessels.
+const AT_END: usize = 15;
 /// Maximum number of points of a web.
-const MOST_ROWS: usize = 64;
+const MOST_ROWS: usize = 1024;
 /// Maximum number of pairs of vessels examined in a cluster.
 const MOST_PAIRS: usize = 4096;
 /// Maximum number of pairs of close vessels tested in a cluster.
@@ -42,7 +53,19 @@ pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<W
     let mut found = Vec::new();
     for (pair, points, radii) in touching(&cluster.tubes).into_iter().take(MOST_PAIRS) {
         watch.spend(cluster.tubes.len())?;
-        found.extend(graph.course(pair, points, FAR * radii).and_then(|course| Web::between(&course, &mut walls)));
+        let course = graph.course(pair, points, FAR * radii);
+        found.extend(course.and_then(|course| Slit::along(&course, &mut walls).web()));
+    }
+    let mut ends = Vec::new();
+    for course in crotches(&graph) {
+        watch.spend(MOST_ROWS)?;
+        let slit = Slit::along(&course, &mut walls);
+        found.extend(slit.web());
+        ends.extend(slit.end());
+    }
+    if found.is_empty() {
+        // The wall joins at less than a step, or beside the middle.
+        found = ends;
     }
     found.sort_by(|a, b| a.width.total_cmp(&b.width));
     let mut webs = Webs::default();
@@ -53,6 +76,24 @@ pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<W
         }
     }
     Ok(webs)
+}
+
+/// Courses through bifurcations: equal lengths of two vessels that leave a node at a small angle.
+fn crotches(graph: &Graph) -> Vec<Course> {
+    let mut found = Vec::new();
+    for (node, beside) in graph.beside.iter().enumerate().filter(|(_, beside)| beside.len() > 2) {
+        for (i, &e) in beside.iter().enumerate() {
+            for &f in &beside[..i] {
+                let tubes = [f, e].map(|tube| graph.from(tube, node as u32));
+                let [u, v] = tubes.each_ref().map(|tube| tube.b - tube.a);
+                if u.dot(&v) > CROTCH_COSINE * u.norm() * v.norm() {
+                    let limit = CROTCH_LENGTH * tubes[0].ra.max(tubes[1].ra);
+                    found.push(graph.fork([f, e], node as u32, limit));
+                }
+            }
+        }
+    }
+    found
 }
 
 /// Pairs of tubes that touch and share no end, with the closest points on their axes and the sum of the radii there. Pairs
@@ -112,6 +153,52 @@ impl Row {
     }
 }
 
+/// Both halves of a course along vessels, from a point on one vessel to a point on another, where they are close.
+struct Slit {
+    rows: Vec<Row>,
+    /// True where the wall parts them.
+    open: Vec<bool>,
+}
+
+impl Slit {
+    fn along(course: &Course, walls: &mut WallSearch) -> Self {
+        let length = course.length();
+        let step = STEP * course.points.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
+        let count = ((0.5 * length / step).ceil() as usize).min(MOST_ROWS);
+        let rows = (0..count).map(|i| Row::at(course, 0.5 * length * i as f64 / count as f64));
+        // Where the vessels are further apart at first, they are separate.
+        let rows: Vec<Row> = rows.skip_while(|row| row.gap > WIDEST * row.wider).collect();
+        let open = rows.iter().map(|row| walls.is_parted(&row.ends[0], &row.ends[1])).collect();
+        Self { rows, open }
+    }
+
+    /// Web that covers the places where the wall parts the halves, from the first place on where it does not. `None` without
+    /// such places, or if the gap is too wide between them.
+    fn web(&self) -> Option<Web> {
+        let joined = self.open.iter().position(|&is_open| !is_open)?;
+        let first = joined + self.open[joined..].iter().position(|&is_open| is_open)?;
+        self.covered(first, self.last()?)
+    }
+
+    /// Web at the place where the wall begins to part the halves.
+    fn end(&self) -> Option<Web> {
+        let last = self.last()?;
+        self.covered(last.saturating_sub(AT_END), last)
+    }
+
+    /// Last place at which the wall parts the halves.
+    fn last(&self) -> Option<usize> {
+        self.open.iter().rposition(|&is_open| is_open)
+    }
+
+    fn covered(&self, first: usize, last: usize) -> Option<Web> {
+        let covered = &self.rows[first.saturating_sub(BEYOND)..(last + BEYOND).min(self.rows.len())];
+        let width = covered.iter().map(|row| row.gap / row.wider).fold(0.0, f64::max);
+        let points = || covered.iter().map(Row::web).collect();
+        (width <= WIDEST).then(|| Web { points: points(), width })
+    }
+}
+
 /// Tube in the middle of a gap: its points and radii.
 struct Web {
     points: Vec<(Point3, f64)>,
@@ -120,23 +207,6 @@ struct Web {
 }
 
 impl Web {
-    /// Web between both halves of a course along vessels, from one of two points that touch to the other. `None` if the wall
-    /// parts these points, if it parts the halves nowhere, or if the gap is too wide.
-    fn between(course: &Course, walls: &mut WallSearch) -> Option<Self> {
-        let length = course.length();
-        let step = STEP * course.points.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
-        let count = ((0.5 * length / step).ceil() as usize).min(MOST_ROWS);
-        let rows: Vec<Row> = (0..count).map(|i| Row::at(course, 0.5 * length * i as f64 / count as f64)).collect();
-        let width = rows.iter().map(|row| row.gap / row.wider).fold(0.0, f64::max);
-        if width > WIDEST {
-            return None;
-        }
-        let open: Vec<bool> = rows.iter().map(|row| walls.is_parted(&row.ends[0], &row.ends[1])).collect();
-        let (first, last) = (open.iter().position(|&o| o)?, open.iter().rposition(|&o| o)?);
-        let points = || rows[first - 1..=(last + 1).min(count - 1)].iter().map(Row::web).collect();
-        (first > 0).then(|| Self { points: points(), width })
-    }
-
     /// True if other webs cover its points.
     fn is_within(&self, others: &[Tube]) -> bool {
         let is_covered = |p: &Point3| others.iter().any(|tube| point_tube(p, tube).1 < 0.0);
@@ -169,8 +239,8 @@ mod tests {
         Cluster { tubes, ..Cluster::default() }
     }
 
-    fn wall(tubes: &[Tube]) -> TriMesh {
-        let params = SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(0.3) };
+    fn wall(tubes: &[Tube], voxel: f64) -> TriMesh {
+        let params = SurfaceParams { thin: 1.0, ..SurfaceParams::with_voxel(voxel) };
         vessel_wall(tubes, &params, &Finer::default(), &Watch::NOBODY).expect("a wall").mesh
     }
 
@@ -178,14 +248,42 @@ mod tests {
     fn a_narrow_gap_is_closed_and_a_wide_one_is_not() {
         for (height, is_closed) in [(1.4, true), (4.0, false)] {
             let cluster = eye(height);
-            let open = wall(&cluster.tubes);
+            let open = wall(&cluster.tubes, 0.3);
             assert_eq!(euler_characteristic(&open), 0, "height {height}");
             let webs = webs(&open, &cluster, &Watch::NOBODY).unwrap();
             assert_eq!(!webs.gaps.is_empty(), is_closed, "height {height}");
             if is_closed {
-                let closed = wall(&[cluster.tubes, webs.tubes].concat());
+                let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.3);
                 assert_eq!(euler_characteristic(&closed), 2);
             }
         }
+    }
+
+    /// Two branches of radii 1 and 1.2 that leave a trunk at 7 degrees. The trunk comes from a direction in degrees.
+    fn narrow_fork(direction: f64) -> Cluster {
+        let tube = |angle: f64, length: f64, radius: f64| {
+            let (y, x) = (direction + angle).to_radians().sin_cos();
+            Tube { a: Point3::origin(), b: Point3::new(length * x, length * y, 0.0), ra: radius, rb: radius }
+        };
+        Cluster {
+            tubes: vec![tube(0.0, 9.0, 1.4), tube(177.0, 40.0, 1.0), tube(184.0, 40.0, 1.2)],
+            ..Cluster::default()
+        }
+    }
+
+    /// Some of these walls part, join and part again.
+    #[test]
+    fn crotches_of_narrow_bifurcations_are_closed() {
+        let mut with_handles = 0;
+        for direction in (0..36).map(|i| 5.0 * f64::from(i)) {
+            let cluster = narrow_fork(direction);
+            let open = wall(&cluster.tubes, 0.67);
+            let webs = webs(&open, &cluster, &Watch::NOBODY).unwrap();
+            let has_handle = euler_characteristic(&open) < 2;
+            with_handles += usize::from(has_handle);
+            let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.67);
+            assert_eq!(euler_characteristic(&closed), 2, "{direction}°");
+        }
+        assert!(with_handles > 0);
     }
 }

@@ -38,6 +38,7 @@ pub fn brief(report: &RefineReport, fidelity: &str, name: NameOf, ended: &Ended)
         out += &row("worse", &format!("{} (--hold prevents it)", report.worse_names()));
     }
     report.write_crowded(SPELT_OUT, name, &mut out);
+    report.write_buried(SPELT_OUT, name, &mut out);
     if !report.residual.pairs.is_empty() {
         report.write_residual(SPELT_OUT, name, &mut out);
     }

@@ -103,8 +103,9 @@ fn excused([given, prepared]: [&Skeleton; 2], repairs: Repairs) -> FxHashSet<u32
     let Repairs { prepare, refine } = repairs;
     let moved = refine.iter().flat_map(|r| r.demanded.iter().map(|far| far.node));
     let crowded = refine.iter().flat_map(|r| r.crowded.iter().flat_map(|pair| pair.nodes));
+    let buried = refine.iter().flat_map(|r| r.buried.iter().map(|tip| tip.node));
     let joined = prepare.joined.nodes.iter().flat_map(|j| [j.node, j.into]);
-    let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(joined).collect();
+    let mut nodes: FxHashSet<u32> = moved.chain(crowded).chain(buried).chain(joined).collect();
     let adjacency = given.adjacency();
     let name = |n: NodeId| given.node(n).original;
     nodes.extend(given.node_ids().filter(|&n| adjacency.valence(n) > 3).map(name));

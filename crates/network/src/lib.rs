@@ -37,9 +37,9 @@ pub use prepare::{
     TouchingTip, directed, prepare, take_back, touching_text,
 };
 pub use refine::{
-    Crowded, CrowdedPair, Displacement, FarNode, Figures, Freedom, HistorySample, Metric, RefineError, RefineParams,
-    RefineReport, Refined, Residual, ResidualPair, ResidualReport, SplitNode, SplitReport, Treatment, refine, split,
-    split_in_place, split_shared,
+    BuriedTip, Crowded, CrowdedPair, Displacement, FarNode, Figures, Freedom, HistorySample, Metric, RefineError,
+    RefineParams, RefineReport, Refined, Residual, ResidualPair, ResidualReport, SplitNode, SplitReport, Treatment,
+    refine, split, split_in_place, split_shared,
 };
 
 /// The example of the README is a test.

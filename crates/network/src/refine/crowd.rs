@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 
 /// Target distance of terminals, in sums of their radii: their walls must not fuse either.
-const APART: f64 = 1.2;
+pub(super) const APART: f64 = 1.2;
 /// Target distance of terminals that two trees share. Four vessels of radius r surround the hole between them, from
 /// bifurcations about 2.8 r away. At this distance the hole is 1.6 r wide; at 1.2 r the walls close it.
 const SHARED_APART: f64 = 2.0;

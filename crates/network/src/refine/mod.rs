@@ -1,6 +1,7 @@
 //! Refinement of the skeleton before meshing (section 3.1 of the paper).
 
 mod bend;
+mod buried;
 mod contact;
 mod crowd;
 mod cut_length;
@@ -22,6 +23,7 @@ mod tests;
 mod text;
 mod tighten;
 
+pub use buried::BuriedTip;
 pub use crowd::CrowdedPair;
 pub use figures::{Figures, Metric};
 pub use history::{Displacement, HistorySample};
@@ -100,6 +102,9 @@ pub struct RefineReport {
     pub demanded: Vec<FarNode>,
     /// Terminals that are too close for two caps.
     pub crowded: Vec<CrowdedPair>,
+    /// Terminals of a measured network inside another vessel of their bifurcation.
+    #[serde(default)]
+    pub buried: Vec<BuriedTip>,
     /// Remaining overlaps and their treatment.
     pub residual: ResidualReport,
     /// Metrics in which the result is worse than the input.
@@ -136,6 +141,8 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
     let (mut start, splits) = if leashes.is_some() { split_in_place(given) } else { split(given) };
     let mut origin: Vec<Point3> = start.nodes.iter().map(|n| n.position).collect();
     let crowded = crowd::treat(&mut start, &mut origin, params, leashes.is_none());
+    // Other networks have wider bifurcations in the end.
+    let buried = if leashes.is_some() { buried::treat(&mut start, params) } else { Vec::new() };
     let split_figures = Figures::of(&start, measured);
     let moved = solve::solve(start, &given_figures, params, leashes, progress)?;
     let chosen = moved.best.as_ref().map(|best| best.iteration);
@@ -166,6 +173,7 @@ pub fn refine(given: &Skeleton, params: &RefineParams, progress: &dyn Progress) 
         displacement_radii,
         demanded,
         crowded,
+        buried,
         residual,
         worse: result.worse_than(&given_figures, &Metric::ALL),
         history: moved.history,

@@ -65,6 +65,7 @@ fn text(report: &RefineReport, name: NameOf) -> String {
         let _ = writeln!(out, "worse than the input in: {} (--hold prevents it)", report.worse_names());
     }
     report.write_crowded(LISTED, name, &mut out);
+    report.write_buried(LISTED, name, &mut out);
     report.write_residual(LISTED, name, &mut out);
     out
 }
@@ -122,6 +123,28 @@ impl RefineReport {
             );
         }
         unlisted(self.crowded.len(), listed, out);
+    }
+
+    /// Appends the terminals inside another vessel of their bifurcation, at most `listed` of them one by one.
+    pub fn write_buried(&self, listed: usize, name: NameOf, out: &mut String) {
+        if self.buried.is_empty() {
+            return;
+        }
+        let _ = writeln!(out, "{} inside another vessel of its bifurcation", counted(self.buried.len(), "terminal"));
+        for tip in self.buried.iter().take(listed) {
+            let ([a, b], node) = (tip.edge.map(name), name(tip.node));
+            let done = if tip.resolved {
+                format!("turned away, by {:.4} (--crowded-terminals)", tip.moved)
+            } else {
+                "kept; the mesh will lack a cap (--crowded-terminals part)".into()
+            };
+            let _ = writeln!(
+                out,
+                "  node {node} in edge {a}-{b}: distance {:.4}, sum of radii {:.4}: {done}",
+                tip.distance, tip.radii
+            );
+        }
+        unlisted(self.buried.len(), listed, out);
     }
 
     /// Appends the overlaps that remain, at most `listed` of them one by one.
