@@ -109,7 +109,9 @@ impl Summary<'_> {
             None => out.write_str(&row("overlaps", &format!("{} ({pairs})", counted(places.len(), "place"))))?,
             Some(report) => {
                 let before = grouped(report.given.overlaps);
-                out.write_str(&row("overlaps", &format!("{pairs} ({before} before refinement)")))?;
+                let early =
+                    if report.gave_up { ", which ended early: too many vessels are close to each other" } else { "" };
+                out.write_str(&row("overlaps", &format!("{pairs} ({before} before refinement{early})")))?;
             }
         }
         let listed = if self.listed { places.len().min(LISTED) } else { SPELT_OUT };
