@@ -235,9 +235,16 @@ fn cluster_surface(
     let [mut handles, mut loops] = count(&wall)?;
     let mut closed_gaps = Vec::new();
     if handles > loops && params.close_gaps {
-        let webs = webs(&wall.mesh, cluster, watch).map_err(stopped)?;
-        if !webs.gaps.is_empty() {
-            tubes.to_mut().extend(webs.tubes);
+        let open = wall.mesh.clone();
+        for spare in [false, true] {
+            if handles == loops {
+                break;
+            }
+            let webs = webs(&open, cluster, spare, watch).map_err(stopped)?;
+            if webs.gaps.is_empty() {
+                break;
+            }
+            tubes = Cow::Owned([&cluster.tubes[..], &webs.tubes].concat());
             closed_gaps = webs.gaps;
             wall = make(&tubes)?;
             [handles, loops] = count(&wall)?;

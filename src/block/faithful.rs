@@ -110,7 +110,7 @@ fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Poi
         watch.spend(PER_PAIR)?;
         if is_far(&o) {
             watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
-            let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR };
+            let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR, ..CrotchRule::default() };
             if !walls.is_parted(&o.points[0], &o.points[1]) && !crotches.is_in_crotch(&skeleton, &adjacency, o, rule) {
                 return Ok(Some(o.points));
             }

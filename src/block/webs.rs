@@ -1,8 +1,8 @@
 //! Webs: narrow gaps between vessels of a cluster that touch beyond a bifurcation. Such a gap is a tunnel through the
 //! wall, which then has a handle that no loop of the vessels explains. A tube in the gap closes it.
 //!
-//! In the crotch of a narrow bifurcation, the vessels separate so slowly that the wall may part, join and part again where the
-//! gap is about as wide as a voxel.
+//! In the crotch of a narrow bifurcation, the vessels separate slowly. Where the gap is about as wide as a voxel, the wall may
+//! part, join and part again.
 
 use super::faithful::WallSearch;
 use super::graph::{Course, Graph};
@@ -15,7 +15,7 @@ use anastomesh_tet::parts::Watch;
 /// Maximum distance of vessels that touch, in sums of their radii: their walls may blend.
 const NEAR: f64 = 1.3;
 /// Maximum length along the vessels between the two points that touch, in sums of the radii.
-const FAR: f64 = 6.0;
+const FAR: f64 = 10.0;
 /// Maximum width of a gap, in radii of the wider vessel beside it.
 const WIDEST: f64 = 1.0;
 /// Maximum length of a crotch, in radii at its bifurcation.
@@ -43,24 +43,25 @@ pub(super) struct Webs {
     pub gaps: Vec<Point3>,
 }
 
-/// Webs in the narrow gaps between vessels of a cluster whose wall does not part them.
+/// Webs in the narrow gaps between vessels of a cluster whose wall does not part them. With `spare`, the outermost gap of each pair
+/// of vessels stays open, as it may belong to a loop of the vessels.
 ///
 /// # Errors
 /// [`Stop`] if the watch stops it.
-pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Webs, Stop> {
+pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, spare: bool, watch: &Watch) -> Result<Webs, Stop> {
     let graph = Graph::of(&cluster.tubes);
     let mut walls = WallSearch::new(wall);
     let mut found = Vec::new();
     for (pair, points, radii) in touching(&cluster.tubes).into_iter().take(MOST_PAIRS) {
         watch.spend(cluster.tubes.len())?;
         let course = graph.course(pair, points, FAR * radii);
-        found.extend(course.and_then(|course| Slit::along(&course, &mut walls).web()));
+        found.extend(course.and_then(|course| Slit::along(&course, &mut walls).web(spare)));
     }
     let mut ends = Vec::new();
     for course in crotches(&graph) {
         watch.spend(MOST_ROWS)?;
         let slit = Slit::along(&course, &mut walls);
-        found.extend(slit.web());
+        found.extend(slit.web(spare));
         ends.extend(slit.end());
     }
     if found.is_empty() {
@@ -172,11 +173,12 @@ impl Slit {
         Self { rows, open }
     }
 
-    /// Web that covers the places where the wall parts the halves, from the first place on where it does not. `None` without
-    /// such places, or if the gap is too wide between them.
-    fn web(&self) -> Option<Web> {
-        let joined = self.open.iter().position(|&is_open| !is_open)?;
-        let first = joined + self.open[joined..].iter().position(|&is_open| is_open)?;
+    /// Web that covers the places where the wall parts the halves, from the first place on where it does not. With `spare`, from
+    /// the second such place on, after the outermost gap. `None` without such places, or if the gap is too wide between them.
+    fn web(&self, spare: bool) -> Option<Web> {
+        let next = |from: usize, is_open: bool| Some(from + self.open[from..].iter().position(|&o| o == is_open)?);
+        let first = next(next(0, false)?, true)?;
+        let first = if spare { next(next(first, false)?, true)? } else { first };
         self.covered(first, self.last()?)
     }
 
@@ -250,7 +252,7 @@ mod tests {
             let cluster = eye(height);
             let open = wall(&cluster.tubes, 0.3);
             assert_eq!(euler_characteristic(&open), 0, "height {height}");
-            let webs = webs(&open, &cluster, &Watch::NOBODY).unwrap();
+            let webs = webs(&open, &cluster, false, &Watch::NOBODY).unwrap();
             assert_eq!(!webs.gaps.is_empty(), is_closed, "height {height}");
             if is_closed {
                 let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.3);
@@ -278,11 +280,37 @@ mod tests {
         for direction in (0..36).map(|i| 5.0 * f64::from(i)) {
             let cluster = narrow_fork(direction);
             let open = wall(&cluster.tubes, 0.67);
-            let webs = webs(&open, &cluster, &Watch::NOBODY).unwrap();
+            let webs = webs(&open, &cluster, false, &Watch::NOBODY).unwrap();
             let has_handle = euler_characteristic(&open) < 2;
             with_handles += usize::from(has_handle);
             let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.67);
             assert_eq!(euler_characteristic(&closed), 2, "{direction}°");
+        }
+        assert!(with_handles > 0);
+    }
+
+    /// A loop of two long vessels and a short one: its hole must stay, but not the further ones in its narrow end.
+    #[test]
+    fn the_hole_of_a_narrow_loop_stays() {
+        let mut with_handles = 0;
+        for direction in (0..36).map(|i| 5.0 * f64::from(i)) {
+            let place = |angle: f64, length: f64| {
+                let (y, x) = (direction + angle).to_radians().sin_cos();
+                Point3::new(length * x, length * y, 0.0)
+            };
+            let [apex, left, right] = [Point3::origin(), place(-5.0, 24.0), place(5.0, 24.0)];
+            let ends =
+                [(apex, left), (apex, right), (left, right), (apex, place(180.0, 9.0)), (left, place(-9.0, 40.0))];
+            let tubes = ends.iter().map(|&(a, b)| Tube { a, b, ra: 1.0, rb: 1.0 }).collect();
+            let cluster = Cluster { tubes, ..Cluster::default() };
+            let open = wall(&cluster.tubes, 0.67);
+            if euler_characteristic(&open) == 0 {
+                continue;
+            }
+            with_handles += 1;
+            let webs = webs(&open, &cluster, true, &Watch::NOBODY).unwrap();
+            let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.67);
+            assert_eq!(euler_characteristic(&closed), 0, "{direction}°");
         }
         assert!(with_handles > 0);
     }

@@ -25,11 +25,13 @@ pub struct CrotchRule {
     pub narrower: f64,
     /// Path length, in sums of the radii of the overlap, by which its places may lie beyond the crotch.
     pub beyond: f64,
+    /// Distance, in sums of radii, by which the vessels may part on that path. If they part further, they enclose a gap.
+    pub parting: f64,
 }
 
 impl Default for CrotchRule {
     fn default() -> Self {
-        Self { narrower: 1.0, beyond: 0.5 * JOINED }
+        Self { narrower: 1.0, beyond: 0.5 * JOINED, parting: f64::INFINITY }
     }
 }
 
@@ -211,6 +213,7 @@ impl Path {
     fn closes(&self, rule: CrotchRule, beyond: f64) -> bool {
         let (mut low, mut high) = (0.0, self.end());
         let mut has_met = false;
+        let mut least = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let [(_, ra), (_, rb)] = [self.at(low), self.at(high)];
             let thick = ra.max(rb) * rule.narrower;
@@ -225,10 +228,12 @@ impl Path {
             let step = STEP * rule.narrower * ra.min(rb);
             let ways = [(low + step, high - step), (low + step, high), (low, high - step)];
             let Some(&next) = ways.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return false };
-            let meets = apart(&next) < 1.0;
+            let distance = apart(&next);
+            let meets = distance < 1.0;
             has_met |= meets;
             (low, high) = next;
-            if !meets && (has_met || self.length - (high - low) > beyond) {
+            least = least.min(distance);
+            if !meets && (has_met || self.length - (high - low) > beyond || distance > least + rule.parting) {
                 return false;
             }
         }
@@ -275,6 +280,20 @@ mod tests {
     fn branches_that_meet_again_have_none_there() {
         let (points, edges) = fork(&[1.5, 2.5, 4.0, 4.0, 2.5, 1.0, 1.0, 2.5, 4.0]);
         assert!(in_crotch(&points, &edges).contains(&false));
+    }
+
+    #[test]
+    fn vessels_that_part_before_their_crotch_enclose_a_gap() {
+        let (points, edges) = fork(&[1.2, 1.7, 2.6, 2.1, 4.0, 6.0]);
+        let s = network(&points, 1.2, &edges);
+        let adjacency = s.adjacency();
+        let at_end = s.overlaps(&adjacency).pairs.into_iter().filter(|o| o.points[0].x > 7.0).collect::<Vec<_>>();
+        assert!(!at_end.is_empty());
+        let is_in = |parting| {
+            let rule = CrotchRule { narrower: 1.0 / 1.2, beyond: 6.0, parting };
+            at_end.iter().all(|o| s.is_in_crotch(&adjacency, o, rule))
+        };
+        assert!(is_in(f64::INFINITY) && !is_in(0.15));
     }
 
     #[test]

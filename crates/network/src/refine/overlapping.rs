@@ -4,6 +4,9 @@ use anastomesh_skeleton::{Adjacency, CrotchRule, CrotchSearch, EdgeId, Overlap, 
 use rayon::prelude::*;
 use std::borrow::Cow;
 
+/// Distance, in sums of radii, by which vessels may part between a contact and their crotch. Else their walls enclose a gap there.
+const PARTING: f64 = 0.15;
+
 /// Overlaps of vessels with radii multiplied by a factor. Without `crotches`, the overlaps in crotches of bifurcations do not
 /// count. Measured vessels leave bifurcations at small angles, and their lumens divide where the tubes separate.
 pub(super) fn overlapping(skeleton: &Skeleton, adjacency: &Adjacency, crotches: bool, factor: f64) -> Overlaps {
@@ -32,7 +35,7 @@ fn widened(skeleton: &Skeleton, factor: f64) -> Cow<'_, Skeleton> {
 
 /// Overlaps of a widened network that lie in a crotch, or those that do not.
 fn by_crotch(wide: &Skeleton, adjacency: &Adjacency, found: &Overlaps, factor: f64, inside: bool) -> Vec<Overlap> {
-    let rule = CrotchRule { narrower: 1.0 / factor, ..CrotchRule::default() };
+    let rule = CrotchRule { narrower: 1.0 / factor, parting: PARTING, ..CrotchRule::default() };
     let by_edge = found.pairs.par_chunk_by(|p, q| p.edges[0] == q.edges[0]);
     let of_edge = |search: &mut CrotchSearch, pairs: &[Overlap]| -> Vec<Overlap> {
         pairs.iter().filter(|pair| search.is_in_crotch(wide, adjacency, pair, rule) == inside).copied().collect()
