@@ -33,7 +33,7 @@ use anastomesh_network::directed;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Input file. Volume mesh: .vtu, .pvtu, .msh, .mesh, .ele, .npyd. Surface: .stl, .ply, .obj, .off. Network: .swc, .vtp,
-    /// .vtk, .am, .csv, .graphml, .gxl, .net, .json, .vmv, .npyd, .in, .edge
+    /// .vtk, .am, .csv, .graphml, .gxl, .net, .json, .vmv, .h5, .npyd, .in, .edge
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// Output file. For a volume mesh: a mesh format, or a surface format for its boundary. For a surface: .stl, .ply, .obj,

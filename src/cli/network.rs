@@ -17,7 +17,7 @@ use anastomesh_skeleton::{CleanReport, NodeId, Skeleton, clean};
 #[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
     /// Network file: .swc, .vtp, .vtk or .vtu (lines), .am (Amira text), .csv (nodes and edges), .graphml, .gxl, .net or
-    /// .pajek, .json (node-link), .vmv (`VessMorphoVis`), .npyd (folder of `NumPy` arrays), .in (`SimVascular` 1D), .edge
+    /// .pajek, .json (node-link), .vmv (`VessMorphoVis`), .h5 (vascpy), .npyd (folder of `NumPy` arrays), .in (`SimVascular` 1D), .edge
     /// (with .node of the same name)
     #[arg(value_name = "NETWORK")]
     pub network: PathBuf,

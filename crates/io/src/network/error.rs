@@ -4,6 +4,7 @@ use super::amira::AmiraError;
 use super::csv::CsvError;
 use super::graph::GraphFault;
 use super::graph_xml::GraphXmlError;
+use super::hdf5::Hdf5Error;
 use super::json::JsonError;
 use super::npy::NpyNetworkError;
 use super::pajek::PajekError;
@@ -21,7 +22,7 @@ use std::path::PathBuf;
 
 /// Known extensions, for messages.
 pub(super) const KNOWN: &str =
-    ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .npyd, .in, .node with .edge";
+    ".swc, .vtp, .vtk, .vtu, .am, .csv, .graphml, .gxl, .net, .pajek, .json, .vmv, .h5, .npyd, .in, .node with .edge";
 
 /// Errors of reading and writing a network file.
 #[derive(Debug, thiserror::Error)]
@@ -30,16 +31,6 @@ pub enum NetworkFileError {
     /// The extension is unknown, or the file cannot be read, is empty or is not a network.
     #[error(transparent)]
     File(#[from] FileError<NetworkFault>),
-    /// The file is HDF5, which is not supported.
-    #[error(
-        "{}: HDF5 is not supported; convert it with vascpy, for example: \
-         python -c \"from vascpy import PointVasculature as V; v = V.load_sonata('{0}'); \
-         v.node_properties.to_csv('nodes.csv'); v.edge_properties.to_csv('edges.csv')\"", path.display()
-    )]
-    Hdf5 {
-        /// Path of the file.
-        path: PathBuf,
-    },
     /// The path is a directory.
     #[error("{}: is a directory; name a network file ({KNOWN})", path.display())]
     Directory {
@@ -99,6 +90,7 @@ impl NetworkFileError {
         | NetworkFault::GraphXml(GraphXmlError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Pajek(PajekError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::Json(JsonError::Graph(GraphFault::Radius(radius)))
+        | NetworkFault::Hdf5(Hdf5Error::Radius(radius))
         | NetworkFault::Vmv(VmvError::Graph(GraphFault::Radius(radius)))
         | NetworkFault::TetgenEdges(EdgeFileError::Radius(radius))
         | NetworkFault::Csv(CsvError::Graph(GraphFault::Radius(radius)))) = fault
@@ -152,6 +144,9 @@ pub enum NetworkFault {
     /// The VMV file is invalid.
     #[error(transparent)]
     Vmv(#[from] VmvError),
+    /// The HDF5 file is invalid.
+    #[error(transparent)]
+    Hdf5(#[from] Hdf5Error),
     /// TetGen's files are invalid.
     #[error(transparent)]
     TetgenEdges(#[from] EdgeFileError),

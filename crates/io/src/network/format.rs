@@ -32,12 +32,14 @@ pub enum NetworkFormat {
     Vtu,
     /// Vertices and strands of `VessMorphoVis`: `.vmv`.
     Vmv,
+    /// Sections of vascpy and `VessMorphoVis`, or SONATA segments, in HDF5: `.h5`, `.hdf5`.
+    Hdf5,
     /// TetGen's points and edges in two files of one name: `.edge`, with `.node` beside it.
     TetgenEdges,
 }
 
 /// Extensions in lower case.
-const EXTENSIONS: [(&str, NetworkFormat); 18] = [
+const EXTENSIONS: [(&str, NetworkFormat); 20] = [
     ("swc", NetworkFormat::Swc),
     ("vtp", NetworkFormat::Vtp),
     ("vtk", NetworkFormat::Vtk),
@@ -55,6 +57,8 @@ const EXTENSIONS: [(&str, NetworkFormat); 18] = [
     ("paj", NetworkFormat::Pajek),
     ("vtu", NetworkFormat::Vtu),
     ("vmv", NetworkFormat::Vmv),
+    ("h5", NetworkFormat::Hdf5),
+    ("hdf5", NetworkFormat::Hdf5),
     ("edge", NetworkFormat::TetgenEdges),
 ];
 

@@ -275,12 +275,6 @@ fn a_file_without_radii_gets_the_given_one() {
 }
 
 #[test]
-fn hdf5_is_named_with_a_way_to_convert_it() {
-    let refused = read_network("brain.h5".as_ref(), &NetworkOptions::default()).unwrap_err().to_string();
-    assert!(refused.contains("HDF5 is not supported") && refused.contains("vascpy"), "{refused}");
-}
-
-#[test]
 fn vessels_that_end_beside_their_vertex_are_joined_to_it() {
     let text = String::from_utf8_lossy(VESSELS).replace("[[0, 0, 10], [0, 5, 20]]", "[[0, 1, 11], [0, 5, 20]]");
     let network = read(text.as_bytes(), NetworkFormat::Json).unwrap();

@@ -10,6 +10,7 @@ mod graph;
 #[cfg(test)]
 mod graph_tests;
 mod graph_xml;
+mod hdf5;
 mod json;
 mod npy;
 mod pajek;
@@ -39,6 +40,7 @@ pub mod faults {
     pub use super::error::NetworkFault;
     pub use super::graph::{GraphFault, GraphPlace};
     pub use super::graph_xml::GraphXmlError;
+    pub use super::hdf5::Hdf5Error;
     pub use super::json::{JsonError, VesselListError};
     pub use super::npy::NpyNetworkError;
     pub use super::pajek::PajekError;

@@ -4,8 +4,8 @@ use super::content::{NetworkFile, NetworkNote, NetworkOptions};
 use super::error::{NetworkFault, NetworkFileError};
 use super::format::NetworkFormat;
 use super::scale::scale;
-use super::{amira, csv, graph_xml, json, npy, pajek, sv1d, swc, tetgen, vmv, vtk, vtp};
-use crate::file::{FileError, extension, read_bytes};
+use super::{amira, csv, graph_xml, hdf5, json, npy, pajek, sv1d, swc, tetgen, vmv, vtk, vtp};
+use crate::file::{FileError, read_bytes};
 use crate::npy::Arrays;
 use std::path::Path;
 
@@ -26,9 +26,6 @@ pub fn read_network(path: &Path, options: &NetworkOptions) -> Result<NetworkFile
     let format = NetworkFormat::of(path);
     if path.is_dir() && !matches!(format, Ok(NetworkFormat::Npy)) {
         return Err(NetworkFileError::Directory { path: path.to_path_buf() });
-    }
-    if is_hdf5(path) {
-        return Err(NetworkFileError::Hdf5 { path: path.to_path_buf() });
     }
     let format = format?;
     if format == NetworkFormat::TetgenEdges {
@@ -95,6 +92,7 @@ pub fn read_network_from(
         NetworkFormat::Sv1d => sv1d::read(bytes, options)?,
         NetworkFormat::Vtu => vtp::read_grid(bytes, options)?,
         NetworkFormat::Vmv => vmv::read(bytes, options)?,
+        NetworkFormat::Hdf5 => hdf5::read(bytes, options)?,
     };
     finished(network, options)
 }
@@ -105,11 +103,6 @@ pub fn read_network_from(
 /// The files are not a valid network.
 pub fn read_network_arrays(files: &[(&str, &[u8])], options: &NetworkOptions) -> Result<NetworkFile, NetworkFault> {
     finished(npy::read(&Arrays::of(files), options)?, options)
-}
-
-/// True if a file has the extension of HDF5.
-fn is_hdf5(path: &Path) -> bool {
-    ["h5", "hdf5"].contains(&extension(path).as_str())
 }
 
 /// Common final steps: scales lengths as requested and checks all numbers.
