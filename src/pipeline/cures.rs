@@ -4,11 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::blocks::{Blocks, cut_nodes, original_nodes};
+use super::estimate::too_fine;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::Retry;
 use super::tips::is_buried;
 use crate::block::BlockError;
-use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, Layout, PartitionParams};
 use anastomesh_skeleton::{BranchId, Skeleton};
 
 /// Stage of the cure of a branch with a failed cut.
@@ -52,26 +53,26 @@ pub(super) fn partition_params(
     params
 }
 
+/// Chooses cures for clusters that fail before they are made, as their walls cross too many grid cells.
+pub(super) fn cure_too_fine(
+    skeleton: &Skeleton,
+    partition: &Layout,
+    plan: &MeshPlan,
+    cures: &mut BTreeMap<BranchId, Cure>,
+) -> Vec<Retry> {
+    let ids = (0..partition.clusters_len() as u32).map(ClusterId);
+    let too_fine = |id| too_fine(id, &partition.cluster(id), plan);
+    ids.filter_map(|id| cure_cluster(skeleton, partition, (id, &too_fine(id)?), cures)).collect()
+}
+
 /// Chooses cures for failed blocks and returns them as retries; empty without failures or remaining cures.
 pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<BranchId, Cure>) -> Vec<Retry> {
     let mut found = Vec::new();
-    for (i, mesh) in blocks.clusters.iter().enumerate() {
-        let Err(error) = mesh else { continue };
-        let cluster = &blocks.partition.cluster(ClusterId(i as u32));
-        if is_buried(error) {
-            continue;
-        }
-        let mut remedies = Vec::new();
-        for branch in troubled_branches(blocks, cluster, error) {
-            remedies.extend(advance(cures, branch));
-        }
-        if !remedies.is_empty() {
-            found.push(Retry {
-                block: format!("cluster {i}"),
-                nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
-                reason: error.to_string(),
-                remedy: remedies.join(", "),
-            });
+    for (i, mesh) in (0..).zip(&blocks.clusters) {
+        if let Err(error) = mesh
+            && !is_buried(error)
+        {
+            found.extend(cure_cluster(skeleton, &blocks.partition, (ClusterId(i), error), cures));
         }
     }
     for (i, mesh) in blocks.connectors.iter().enumerate() {
@@ -89,10 +90,28 @@ pub(super) fn cure(skeleton: &Skeleton, blocks: &Blocks, cures: &mut BTreeMap<Br
     found
 }
 
+/// Chooses cures for a failed cluster; `None` if all were tried.
+fn cure_cluster(
+    skeleton: &Skeleton,
+    partition: &Layout,
+    (id, error): (ClusterId, &BlockError),
+    cures: &mut BTreeMap<BranchId, Cure>,
+) -> Option<Retry> {
+    let cluster = partition.cluster(id);
+    let branches = troubled_branches(partition, &cluster, error);
+    let remedies: Vec<String> = branches.into_iter().filter_map(|branch| advance(cures, branch)).collect();
+    (!remedies.is_empty()).then(|| Retry {
+        block: format!("cluster {}", id.0),
+        nodes: original_nodes(skeleton, cluster.nodes.iter().copied()),
+        reason: error.to_string(),
+        remedy: remedies.join(", "),
+    })
+}
+
 /// The branches whose cuts may be the cause of a cluster's failure: the one at which it failed, else all.
-fn troubled_branches(blocks: &Blocks, cluster: &Cluster, error: &BlockError) -> Vec<BranchId> {
+fn troubled_branches(partition: &Layout, cluster: &Cluster, error: &BlockError) -> Vec<BranchId> {
     let of_end = |end: &ClusterEnd| match end.kind {
-        EndKind::Cut { cut, .. } => Some(blocks.partition.branch_of_cut(cut)),
+        EndKind::Cut { cut, .. } => Some(partition.branch_of_cut(cut)),
         EndKind::Terminal(_) => None,
     };
     if let BlockError::End { end, .. } = error {

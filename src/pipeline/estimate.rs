@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
-use crate::block::{BlockDump, BlockInput, BlockParams};
-use crate::partition::{Cluster, Cut, Layout};
-use crate::surface::{MAX_CELLS, estimated_cells};
+use crate::block::{BlockDump, BlockError, BlockInput, BlockParams};
+use crate::partition::{Cluster, ClusterId, Cut, Layout};
+use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells};
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::Skeleton;
 
@@ -183,23 +183,46 @@ fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let plan = &*plan.of_tube(cluster.size);
-    // The end of a vessel, or a piece between two cuts.
-    if cluster.ends.len() == 2 && plan.joint == JointStyle::Disc {
+    if is_piece(cluster, plan) {
         let tubes = cluster.tubes.iter().filter(|t| t.length() > 0.0);
         return tube_cost(tubes.map(|t| (t.length(), 0.5 * (t.ra + t.rb))), plan);
     }
-    let thin = cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
+    let thin = thinnest(cluster);
     let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
     let finer: f64 = cluster.fine.iter().map(|fork| fork.factor.powf(-POWER_OF_FORK) - 1.0).sum();
     let cost = of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer);
-    let voxel = 2.0 * thin / plan.rho;
-    let cells = estimated_cells(&cluster.tubes, voxel);
+    let cells = cells(cluster, thin, plan);
     // An attempt with more cells fails before it makes a grid.
     if cells > MAX_CELLS as f64 {
         return cost;
     }
     let bytes = cost.bytes.max((BYTES_PER_BLOCK + BYTES_PER_CELL * cells) as u64);
     Cost { operations: cost.operations + PER_CELL * cells, bytes, ..cost }
+}
+
+/// Failure of a cluster whose wall crosses more grid cells than allowed; `None` if it does not, or needs no grid.
+pub fn too_fine(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Option<BlockError> {
+    let plan = &*plan.of_tube(cluster.size);
+    if is_piece(cluster, plan) {
+        return None;
+    }
+    let cells = cells(cluster, thinnest(cluster), plan);
+    let source = SurfaceError::TooLarge { cells, limit: MAX_CELLS };
+    (cells > MAX_CELLS as f64).then_some(BlockError::Surface { cluster: id, source })
+}
+
+/// True for the end of a vessel, or a piece between two cuts.
+fn is_piece(cluster: &Cluster, plan: &MeshPlan) -> bool {
+    cluster.ends.len() == 2 && plan.joint == JointStyle::Disc
+}
+
+fn thinnest(cluster: &Cluster) -> f64 {
+    cluster.tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min)
+}
+
+/// Number of grid cells that the wall of a cluster with this thinnest radius crosses.
+fn cells(cluster: &Cluster, thin: f64, plan: &MeshPlan) -> f64 {
+    estimated_cells(&cluster.tubes, 2.0 * thin / plan.rho)
 }
 
 /// Cost of an attempt at a cluster with other parameters than the plan's.

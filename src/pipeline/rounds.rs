@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use super::attempts::RetryStrategy;
 use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::carried::Carried;
-use super::cures::{Cure, cure, partition_params};
+use super::cures::{Cure, cure, cure_too_fine, partition_params};
 use super::error::RunError;
 use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{BlockResult, Workshop};
@@ -29,7 +29,7 @@ use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{BranchId, Overlaps};
 use anastomesh_tet::parts::Watch;
 
-/// Maximum changes of the partition because of blocks that fail.
+/// Maximum changes of the partition because of blocks that fail, and because of clusters that are known to fail.
 const MAX_PARTITION_CHANGES: usize = 6;
 
 /// Environment of a run.
@@ -60,15 +60,23 @@ impl RunContext<'_> {
         let together = self.together();
         let mut retries = Vec::new();
         let mut told = BTreeSet::new();
-        let mut round = 0;
+        let (mut round, mut early) = (0, 0);
         loop {
             let partition = self.partition(&cures, &together)?;
-            if round == 0 {
+            if round + early == 0 {
                 let estimate = Estimate::of(&partition, self.shop.plan);
                 self.shop.store.ledger().expect(estimate.operations);
                 fits(&estimate)?;
                 if before.is_none() {
                     sizes::announce(self.shop.skeleton, &partition, self.shop.plan, self.progress);
+                }
+            }
+            if early < MAX_PARTITION_CHANGES {
+                let found = cure_too_fine(self.shop.skeleton, &partition, self.shop.plan, &mut cures);
+                if !found.is_empty() {
+                    retries.extend(found);
+                    early += 1;
+                    continue;
                 }
             }
             let blocks = self.pass(partition, before)?;

@@ -290,11 +290,11 @@ impl<'a> Meshing<'a, '_> {
         self.refine.as_ref().is_some_and(|params| params.lengthens(&networks.prepared))
     }
 
-    /// True if the first mesh is sound and the second is not, or differs more from the given network. Of two meshes that are not
+    /// True if the first mesh is sound and the second is not, or differs no less from the given network. Of two meshes that are not
     /// sound, the second one must differ by more than the usual limits, too.
     fn is_closer(&self, first: &Candidate, second: &Candidate) -> bool {
         match [first, second].map(|candidate| self.fault_of(&candidate.stored)) {
-            [None, None] => difference(first) < difference(second),
+            [None, None] => difference(first) <= difference(second),
             [None, Some(_)] => true,
             [Some(_), None] => false,
             [Some(_), Some(_)] => difference(second) > difference(first).max(1.0),
@@ -346,9 +346,10 @@ impl<'a> Meshing<'a, '_> {
         fault: Option<Fault>,
         networks: Networks,
     ) -> Outcome<'a> {
+        let limit = if networks.refine.is_some() { MAX_VOLUME_ERROR } else { limits::LUMEN };
         let volume = |stored: &Meshed<Whole>| {
             let error = self.refine.as_ref().map(|_| volume_error(stored, &networks));
-            error.filter(|&error| error > MAX_VOLUME_ERROR).map(Fault::Volume)
+            error.filter(|&error| error > limit).map(Fault::Volume)
         };
         let fault = fault.or_else(|| made.as_ref().ok().and_then(volume));
         self.attempts.push(Attempt { strategy, fault });
