@@ -127,8 +127,33 @@ impl Cells {
     }
 }
 
+/// Passes on the layer of each tetrahedron of a mesh with layers, part by part: see [`layers_in`].
+///
+/// # Errors
+/// Errors of reading the mesh, and of `each`.
+pub fn each_layers(mesh: &dyn MeshSource, mut each: impl FnMut(&[i32]) -> io::Result<()>) -> io::Result<()> {
+    mesh.each_part(|part| Ok(layers_in(&mesh.tets(part)?.tets, &mesh.boundary(part)?)), |layers| each(&layers))
+}
+
+/// Layer of each tetrahedron of a part: 1 at the wall, 0 for those in no prism or pyramid.
+#[must_use]
+pub fn layers_in(tets: &[[u32; 4]], boundary: &FacePiece) -> Vec<i32> {
+    let mut layers = vec![0; tets.len()];
+    let mut outer: Option<(usize, LayerCell)> = None;
+    for (at, cell) in in_part(tets, boundary).0 {
+        let inside = outer.filter(|(end, outer)| *end == at && face_key(outer.top) == face_key(cell.base));
+        let layer = 1 + inside.map_or(0, |_| layers[at - 1]);
+        layers[at..at + cell.tets].fill(layer);
+        outer = Some((at + cell.tets, cell));
+    }
+    layers
+}
+
 /// True if the wall triangles of the first parts begin stacks.
-fn is_layered(mesh: &dyn MeshSource) -> io::Result<bool> {
+///
+/// # Errors
+/// Errors of reading the mesh.
+pub fn is_layered(mesh: &dyn MeshSource) -> io::Result<bool> {
     let (mut walls, mut begun) = (0, 0);
     for part in 0..mesh.parts() {
         let boundary = mesh.boundary(part)?;

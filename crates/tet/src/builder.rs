@@ -65,6 +65,8 @@ pub struct Tetrahedralization {
     /// Input triangle of each of `faces`, or the one that it is a piece of. Empty if each face is the input triangle of
     /// the same index, because none was split or left out.
     pub origins: Vec<u32>,
+    /// Layer of each tetrahedron, counted from 1 at the wall; 0 inside the layers. Empty in a mesh without layers.
+    pub layers: Vec<i32>,
     /// Summary of the run.
     pub summary: Summary,
 }
@@ -271,12 +273,13 @@ impl Tetrahedralizer {
             label: true,
             watch,
         };
-        let (filled, layers, outer) = match &self.layers {
+        let (filled, layers, of_tets, outer) = match &self.layers {
             Some(layers) => {
-                let Layered { filled, summary, outer } = layered(&request, layers, (plc.markers, &self.layers_on))?;
-                (filled, Some(summary), outer)
+                let Layered { filled, summary, of_tets, outer } =
+                    layered(&request, layers, (plc.markers, &self.layers_on))?;
+                (filled, Some(summary), of_tets, outer)
             }
-            None => (fill(&request)?, None, None),
+            None => (fill(&request)?, None, Vec::new(), None),
         };
         let outward = |(t, place): (&[u32; 3], &Place)| match place {
             Place::Reversed => [t[0], t[2], t[1]],
@@ -308,6 +311,7 @@ impl Tetrahedralizer {
             },
             mesh: filled.mesh,
             regions: filled.regions,
+            layers: of_tets,
         })
     }
 

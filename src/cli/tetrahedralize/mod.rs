@@ -92,16 +92,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     watch.leave();
     let made = made.map_err(|e| fault::failure(&e, &from, &input, plan.repair))?;
     stop.keep();
-    if let (Some(made), Some(target)) = (made, target) {
+    if let (Some(mut made), Some(target)) = (made, target) {
         for [seed, earlier] in made.summary.ignored_seeds.iter().filter(|_| !plan.quiet) {
             let [seed, earlier] = [seed, earlier].map(|&index| input.numbers.seed(index));
             log::warning(&format!("{from}: region point {seed} lies in the region of point {earlier}: ignored"));
         }
         fill_report(&mut report, &made, &input, &plan, args);
         input.leave_out(&made.summary.left_out.segments);
+        let layers = std::mem::take(&mut made.layers);
         let volume = output::volume(made, &input);
         let written = watch.time("write", || {
-            pool.install(|| output::write((&target, args.parts), &volume, &input, &plan, &listener))
+            pool.install(|| output::write((&target, args.parts), (&volume, &layers), &input, &plan, &listener))
         })?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
         pool.install(|| write_page(args, &plan, &report, &volume))?;

@@ -52,7 +52,7 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
 /// Writes the mesh, in parts on request; returns the files.
 pub fn write(
     (target, parts): (&Target, Option<NonZeroUsize>),
-    volume: &VolumeMesh,
+    (volume, layers): (&VolumeMesh, &[i32]),
     input: &Input,
     plan: &TetPlan,
     progress: &dyn Progress,
@@ -69,7 +69,7 @@ pub fn write(
     };
     match target {
         Target::File(path) => {
-            let options = WriteOptions::default().parts(parts);
+            let options = WriteOptions::default().parts(parts).layers(layers);
             write_mesh_with(&options, path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }

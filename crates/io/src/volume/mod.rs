@@ -9,6 +9,7 @@ pub mod fixtures;
 mod format;
 #[cfg(test)]
 mod in_pieces;
+mod layers;
 mod medit;
 mod msh;
 mod npy;

@@ -17,6 +17,9 @@ pub struct WriteOptions<'a> {
     pub grid: GridOptions,
     /// Additional values for VTK and Gmsh files.
     pub values: Option<&'a dyn Beside>,
+    /// Layer of each tetrahedron, for VTU, PVTU and `NumPy`: 1 at the wall, 0 outside of layers. If `None`, layers are found by
+    /// the order of the tetrahedra.
+    pub layers: Option<&'a [i32]>,
     /// Write the prisms and pyramids of layers as whole cells, not as tetrahedra. VTU, PVTU and MSH only, without values.
     pub prisms: bool,
     /// Number of parts for parallel solvers: folders of processors beside an `OpenFOAM` mesh, pieces of a PVTU mesh, and
@@ -31,6 +34,7 @@ anastomesh_mesh::setters!(WriteOptions<'a> {
     memory: impl Into<Option<usize>>,
     grid: GridOptions,
     values: impl Into<Option<&'a dyn Beside>>,
+    layers: impl Into<Option<&'a [i32]>>,
     prisms: bool,
     parts: impl Into<Option<NonZeroUsize>>,
     remark: impl Into<Option<&'a dyn Fn(&str)>>,

@@ -101,17 +101,9 @@ fn complete(
 ) -> io::Result<AtomicFile> {
     let notes = notes_of(region, notes);
     let mut file = AtomicFile::create(path)?;
-    Grid {
-        mesh: &region.volume,
-        notes: Some(&notes),
-        has_regions: true,
-        global_ids: None,
-        solver_ids: Some(SolverIds { points: &region.points, tets: &region.tets, faces: &region.face_tets }),
-        piece: None,
-        options: grid,
-        values: None,
-    }
-    .write(&mut Asked { out: &mut file, progress })?;
+    let ids = SolverIds { points: &region.points, tets: &region.tets, faces: &region.face_tets };
+    Grid { solver_ids: Some(ids), ..Grid::of(&region.volume, &notes, grid) }
+        .write(&mut Asked { out: &mut file, progress })?;
     file.complete()?;
     Ok(file)
 }

@@ -4,7 +4,7 @@ use super::content::MeshNotes;
 use super::fixtures::{labelled_tube, slab};
 use super::format::MeshFormat;
 use super::in_pieces::InPieces;
-use super::options::WriteOptions;
+use super::options::{GridOptions, WriteOptions};
 use super::read::read_mesh;
 use super::vtu::Recounted;
 use super::write::{ensure_writable, write_format, write_mesh, write_mesh_to, write_mesh_with};
@@ -21,6 +21,7 @@ use proptest::prelude::*;
 use std::borrow::Cow;
 use std::fs;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
+use std::path::Path;
 
 const STREAMED: [MeshFormat; 4] = [MeshFormat::Vtu, MeshFormat::Msh, MeshFormat::Msh2, MeshFormat::Medit];
 
@@ -291,6 +292,28 @@ fn prisms_are_whole_cells_in_vtu_and_msh_and_split_when_read() {
     assert!(String::from_utf8_lossy(&text).contains("NumberOfCells=\"16\""));
     let error = write_mesh_with(&options, &folder.path().join("a.mesh"), &slab(), &MeshNotes::default(), &());
     assert!(error.unwrap_err().to_string().contains(".vtu, .pvtu and .msh"));
+}
+
+#[test]
+fn files_have_the_layer_of_each_tetrahedron() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = [7; 12];
+    for (layers, expected) in [(None, [[1; 3], [2; 3], [1; 3], [2; 3]].as_flattened()), (Some(&given[..]), &given)] {
+        let options = WriteOptions::default().layers(layers).grid(GridOptions::default().raw(true));
+        let bytes: Vec<u8> = expected.iter().flat_map(|layer: &i32| layer.to_le_bytes()).collect();
+        let has = |path: &Path, bytes: &[u8]| {
+            let file = fs::read(path).unwrap();
+            file.windows(bytes.len()).any(|window| window == bytes)
+        };
+        for (name, file) in [("a.vtu", "a.vtu"), ("b.pvtu", "b/b_0000.vtu"), ("c.npyd", "c.npyd/tet_layer.npy")] {
+            write_mesh_with(&options, &folder.path().join(name), &slab(), &MeshNotes::default(), &()).unwrap();
+            assert!(has(&folder.path().join(file), &bytes), "{name}");
+        }
+        assert!(has(&folder.path().join("b.pvtu"), b"Name=\"layer\""));
+    }
+    let (volume, notes) = labelled_tube(2);
+    write_mesh(&folder.path().join("d.vtu"), &volume, &notes).unwrap();
+    assert!(!String::from_utf8_lossy(&fs::read(folder.path().join("d.vtu")).unwrap()).contains("\"layer\""));
 }
 
 /// Prisms of another program, with the outer triangle first or last.

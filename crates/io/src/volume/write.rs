@@ -100,7 +100,7 @@ pub fn write_mesh_with(
         MeshFormat::Pvtu => {
             let usual = Pieces::default();
             let memory = options.memory.unwrap_or(usual.memory);
-            let pieces = Pieces { memory, grid, values: options.values, ..usual };
+            let pieces = Pieces { memory, grid, values: options.values, layers: options.layers, ..usual };
             match options.parts {
                 Some(parts) => pvtu::write_parts(path, mesh, notes, (parts, pieces), progress),
                 None => pvtu::write(path, mesh, notes, pieces, progress),
@@ -109,11 +109,9 @@ pub fn write_mesh_with(
         MeshFormat::OpenFoam => {
             openfoam::write(path, mesh, notes, options.parts, options.remark.unwrap_or(&|_| ()), progress)
         }
-        MeshFormat::Npy => npy::write(path, mesh, notes, options.values, progress),
+        MeshFormat::Npy => npy::write(path, mesh, notes, options, progress),
         MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
-        MeshFormat::Vtu => {
-            write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, grid, options.values))
-        }
+        MeshFormat::Vtu => write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, options)),
         MeshFormat::Msh => write_whole(path, |out| {
             let out = &mut Asked { out, progress };
             match options.parts {
@@ -240,7 +238,7 @@ pub(super) fn write_format(
     notes: &MeshNotes,
 ) -> io::Result<()> {
     match format {
-        MeshFormat::Vtu => vtu::write(out, mesh, notes, GridOptions::default(), None),
+        MeshFormat::Vtu => vtu::write(out, mesh, notes, &WriteOptions::default()),
         MeshFormat::Msh => msh::write(out, mesh, notes, None),
         MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
         MeshFormat::Medit => medit::write(out, mesh, notes),

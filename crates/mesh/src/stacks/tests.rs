@@ -65,6 +65,13 @@ fn two_tetrahedra_are_a_pyramid_if_the_next_layer_has_its_apex() {
 }
 
 #[test]
+fn layers_are_counted_from_the_wall() {
+    let volume = two_stacks();
+    let layers = layers_in(&volume.mesh.tets, &volume.boundary(0).unwrap());
+    assert_eq!(layers, [1, 1, 1, 2, 2, 2, 1, 1, 1, 2, 2, 2, 0]);
+}
+
+#[test]
 fn tetrahedra_in_another_order_are_no_layers() {
     let mut volume = two_stacks();
     volume.mesh.tets.reverse();

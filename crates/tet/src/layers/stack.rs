@@ -112,6 +112,12 @@ impl Numbers {
         (0..self.layers).flat_map(move |layer| self.prism(triangle, layer))
     }
 
+    /// Layer of each tetrahedron at these wall triangles in their order, counted from 1 at the wall.
+    pub fn layers_at(&self, wall: &[[u32; 3]]) -> Vec<i32> {
+        let layer = |(triangle, layer): ([u32; 3], u32)| self.prism(triangle, layer).map(move |_| layer as i32 + 1);
+        wall.iter().flat_map(|&triangle| (0..self.layers).map(move |i| (triangle, i))).flat_map(layer).collect()
+    }
+
     /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
     fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
         let mut sorted = triangle;

@@ -236,3 +236,17 @@ fn layers_vanish_towards_curved_parts_without_layers() {
     assert_eq!(made.faces.len(), sphere.triangles.len());
     assert!(summary.tets > 3 * sphere.triangles.len() && summary.tets < 5 * sphere.triangles.len());
 }
+
+#[test]
+fn each_tetrahedron_has_its_layer() {
+    let sphere = sphere_surface(2);
+    let made = layered(&sphere, THREE);
+    let count = |layer: i32| made.layers.iter().filter(|&&l| l == layer).count();
+    assert_eq!([1, 2, 3].map(count), [3 * sphere.triangles.len(); 3]);
+    assert_eq!(made.layers.len(), made.mesh.tets.len());
+    // A tetrahedron of the first layer has a vertex of the surface, one of the core has none.
+    let is_outer = |tet: &[u32; 4]| tet.iter().any(|&v| (v as usize) < sphere.points.len());
+    let expected = made.mesh.tets.iter().map(is_outer);
+    assert!(made.layers.iter().zip(expected).all(|(&layer, outer)| (layer == 1) == outer));
+    assert!(Tetrahedralizer::new().run(&sphere).expect("certified").layers.is_empty());
+}

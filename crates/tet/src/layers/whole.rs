@@ -49,6 +49,8 @@ pub struct LayerSummary {
 pub struct Layered {
     pub filled: Filled,
     pub summary: LayerSummary,
+    /// Layer of each tetrahedron, counted from 1 at the wall; 0 inside the layers.
+    pub of_tets: Vec<i32>,
     /// Outer surface and the input triangle of each of its triangles, if caps have other triangles than the input.
     pub outer: Option<(TriMesh, Vec<u32>)>,
 }
@@ -86,9 +88,11 @@ pub fn layered(r: &Request, layers: &Layers, (markers, on): (&[i32], &[i32])) ->
     let outer = (summary.shrunk_caps > 0).then(|| outer_surface(&inset, (&surface, &is_wall), &caps));
     let kept = outer.as_ref().map_or(r.surface, |(surface, _)| surface);
     let places = certify_facets(&inset.mesh, kept, r.kind, &regions)?;
+    let mut of_tets = inset.numbers.layers_at(&wall.triangles);
+    of_tets.resize(inset.mesh.tets.len(), 0);
     let Core { recovery, optimize, refine, .. } = about;
     let filled = Filled { mesh: inset.mesh, places, regions, recovery, optimize, refine, ..plain };
-    Ok(Layered { filled, summary, outer })
+    Ok(Layered { filled, summary, of_tets, outer })
 }
 
 /// Part of a surface that gets layers.

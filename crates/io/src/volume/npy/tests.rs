@@ -4,6 +4,7 @@ use super::{read, write};
 use crate::volume::content::{MeshFile, MeshNotes};
 use crate::volume::fixtures::labelled_tube;
 use crate::volume::in_pieces::InPieces;
+use crate::volume::options::WriteOptions;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::source::MeshSource;
 use std::fs;
@@ -11,7 +12,7 @@ use std::path::Path;
 
 fn written(folder: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> std::path::PathBuf {
     let path = folder.join("mesh.npyd");
-    write(&path, mesh, notes, None, &()).unwrap();
+    write(&path, mesh, notes, &WriteOptions::default(), &()).unwrap();
     path
 }
 

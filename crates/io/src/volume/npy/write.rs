@@ -1,10 +1,12 @@
 //! Writer of meshes.
 
-use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
+use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TET_LAYER, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
 use crate::file::{Asked, AtomicFolder};
 use crate::npy::{Item, head};
 use crate::volume::content::MeshNotes;
+use crate::volume::layers::LayerNumbers;
+use crate::volume::options::WriteOptions;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
@@ -27,7 +29,7 @@ pub(in crate::volume) fn ensure_writable(path: &Path) -> io::Result<()> {
 }
 
 /// Writes a multi-pass mesh atomically. Corners are `int32`, which most programs expect, or `uint32` for large point
-/// counts. `values` become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
+/// counts. Values become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
 ///
 /// # Errors
 /// The operating system or the mesh source fails.
@@ -35,7 +37,7 @@ pub(in crate::volume) fn write(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
-    values: Option<&dyn Beside>,
+    options: &WriteOptions,
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
@@ -50,7 +52,12 @@ pub(in crate::volume) fn write(
         writer.cells(mesh, |v| v)?;
     }
     writer.labels(mesh)?;
-    if let Some(values) = values {
+    if let Some(layers) = LayerNumbers::of(mesh, options.layers)? {
+        writer.array::<i32>(TET_LAYER, counts.tets, 1, |out| {
+            layers.each(|some| some.iter().try_for_each(|layer| layer.put(out)))
+        })?;
+    }
+    if let Some(values) = options.values {
         writer.values(mesh, values)?;
     }
     let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;

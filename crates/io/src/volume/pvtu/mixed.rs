@@ -6,7 +6,7 @@ use super::plan::Plan;
 use super::write::{Extent, Pieces, write_index};
 use crate::file::{Asked, AtomicFile, write_whole};
 use crate::volume::content::MeshNotes;
-use crate::volume::vtu::{MixedGrid, REGION, write_mixed as write_grid};
+use crate::volume::vtu::{LAYER, MixedGrid, REGION, write_mixed as write_grid};
 use anastomesh_mesh::bits::Bits;
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::source::{MeshSource, gather};
@@ -68,7 +68,7 @@ pub(in crate::volume) fn write_mixed(
         };
         write_whole(&folder.piece(number), |out| write_grid(&mut Asked { out, progress }, &grid))?;
     }
-    let labels = if notes.regions.is_empty() { &["layer"][..] } else { &["layer", REGION] };
+    let labels = if notes.regions.is_empty() { &[LAYER][..] } else { &[LAYER, REGION] };
     write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, labels)?;
     folder.commit(index, path)
 }

@@ -46,11 +46,8 @@ pub(in crate::volume) fn write_parts(
         let piece = Piece::of(mesh, &reader, part, &mut used)?;
         let first = part == 0;
         let grid = Grid {
-            mesh: &piece.volume,
             notes: first.then_some(notes),
-            has_regions: !notes.regions.is_empty(),
             global_ids: Some(&piece.ids),
-            solver_ids: None,
             piece: Some(PieceArrays {
                 point_ghosts: &piece.point_ghosts,
                 tet_ghosts: &piece.tet_ghosts,
@@ -58,8 +55,8 @@ pub(in crate::volume) fn write_parts(
                 faces: &piece.faces,
                 all_tets: mesh.counts().tets,
             }),
-            options: pieces.grid,
             values: pieces.values,
+            ..Grid::of(&piece.volume, notes, pieces.grid)
         };
         write_whole(&folder.piece(part as usize), |out| grid.write(&mut Asked { out, progress }))?;
     }

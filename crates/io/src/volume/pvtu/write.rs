@@ -5,8 +5,9 @@ use super::order::Reordered;
 use super::plan::Plan;
 use crate::file::{Asked, AtomicFile, write_whole};
 use crate::volume::content::MeshNotes;
+use crate::volume::layers::LayerNumbers;
 use crate::volume::options::GridOptions;
-use crate::volume::vtu::{CELL_IDS, GHOSTS, GLOBAL_IDS, Grid, REGION};
+use crate::volume::vtu::{CELL_IDS, GHOSTS, GLOBAL_IDS, Grid, LAYER, REGION};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::bits::Bits;
@@ -27,11 +28,13 @@ pub(in crate::volume) struct Pieces<'a> {
     pub grid: GridOptions,
     /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
+    /// Layer of each tetrahedron, if known.
+    pub layers: Option<&'a [i32]>,
 }
 
 impl Default for Pieces<'_> {
     fn default() -> Self {
-        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default(), values: None }
+        Self { tets: 2_000_000, memory: 512 << 20, grid: GridOptions::default(), values: None, layers: None }
     }
 }
 
@@ -54,6 +57,7 @@ pub(in crate::volume) fn write(
     let folder = PieceFolder::create(path)?;
     let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh)?;
     let plan = Plan::of(mesh, pieces.tets)?;
+    let layers = LayerNumbers::of(mesh, pieces.layers)?;
     let room = pieces.memory / bytes_of_piece(mesh, pieces.tets).max(1);
     let points = mesh.counts().points;
     PieceWriter {
@@ -64,13 +68,15 @@ pub(in crate::volume) fn write(
         room,
         grid: pieces.grid,
         values: pieces.values,
+        layers,
         progress,
         piece: Bits::new(points),
         used: Bits::new(points),
     }
     .write()?;
-    let labels = if notes.regions.is_empty() { &[][..] } else { &[REGION] };
-    write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, labels)?;
+    let of_regions = (!notes.regions.is_empty()).then_some(REGION);
+    let labels: Vec<&str> = of_regions.into_iter().chain(layers.map(|_| LAYER)).collect();
+    write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, &labels)?;
     folder.commit(index, path)
 }
 
@@ -147,6 +153,7 @@ struct PieceWriter<'a> {
     room: usize,
     grid: GridOptions,
     values: Option<&'a dyn Beside>,
+    layers: Option<LayerNumbers<'a>>,
     progress: &'a dyn Progress,
     /// Points of the current piece.
     piece: Bits,
@@ -160,6 +167,8 @@ struct MeshPiece {
     volume: VolumeMesh,
     /// Global point numbers, ascending.
     ids: Vec<u32>,
+    /// Layer of each tetrahedron, if the mesh has layers.
+    layers: Vec<i32>,
 }
 
 /// Pieces held at a time.
@@ -174,8 +183,11 @@ impl PieceWriter<'_> {
     fn write(mut self) -> io::Result<()> {
         let mut batch = Batch { first: 0, pieces: vec![self.piece_of(0)] };
         let (mut at, mesh) = (0, self.mesh);
+        let mut parts = 0..mesh.parts();
         mesh.each_tets(|part| {
             let mut taken = 0;
+            let number = parts.next().unwrap_or_default();
+            let layers = self.layers.map(|layers| layers.of_part(number, part, at)).transpose()?;
             while taken < part.tets.len() {
                 let number = batch.first + batch.pieces.len() - 1;
                 let end = self.plan.ends.get(number).copied().unwrap_or(usize::MAX);
@@ -188,6 +200,7 @@ impl PieceWriter<'_> {
                 piece.volume.mesh.tets.extend_from_slice(&part.tets[range.clone()]);
                 let blocks = range.clone().map(|i| part.blocks.get(i).copied().unwrap_or(0));
                 piece.volume.tet_block.extend(blocks);
+                piece.layers.extend(layers.as_ref().and_then(|all| all.get(range.clone())).unwrap_or_default());
                 at += range.len();
                 taken = range.end;
             }
@@ -291,14 +304,11 @@ impl PieceWriter<'_> {
             piece.volume.patches = self.mesh.patches().to_vec();
         }
         let grid = Grid {
-            mesh: &piece.volume,
             notes,
-            has_regions: !self.notes.regions.is_empty(),
             global_ids: Some(&piece.ids),
-            solver_ids: None,
-            piece: None,
-            options: self.grid,
+            layers: self.layers.map(|_| LayerNumbers::Given(&piece.layers)),
             values: self.values,
+            ..Grid::of(&piece.volume, self.notes, self.grid)
         };
         write_whole(&self.folder.piece(number), |out| grid.write(&mut Asked { out, progress: self.progress }))
     }

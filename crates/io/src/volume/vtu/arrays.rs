@@ -1,7 +1,8 @@
 //! Arrays of an unstructured grid and the sources of their values.
 
-use super::names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
+use super::names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, LAYER, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
 use crate::volume::content::MeshNotes;
+use crate::volume::layers::LayerNumbers;
 use crate::vtk_xml::Blocks;
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::beside::{Beside, Column};
@@ -344,6 +345,15 @@ fn patch_array(mesh: &dyn MeshSource) -> ArrayWriter<'_> {
     ArrayWriter::new(ArrayLocation::CellData, "patch", INT32, tets + boundary, move |out| {
         out.push(tets, |_| [0; 4])?;
         mesh.each_face_labels(|piece| push_known(out, &piece.patches, piece.count))
+    })
+}
+
+/// Layer of each cell; boundary faces have 0.
+pub(super) fn layer_array(layers: LayerNumbers<'_>, counts: SourceCounts) -> ArrayWriter<'_> {
+    let SourceCounts { tets, boundary, .. } = counts;
+    ArrayWriter::new(ArrayLocation::CellData, LAYER, INT32, tets + boundary, move |out| {
+        layers.each(|some| out.push_ints(some))?;
+        out.push(boundary, |_| [0; 4])
     })
 }
 

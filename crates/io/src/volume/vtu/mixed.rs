@@ -2,7 +2,7 @@
 
 use super::arrays::{self, ArrayLocation, ArrayWriter, INT32};
 use super::file::File;
-use super::names::{REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
+use super::names::{LAYER, REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
 use crate::volume::content::MeshNotes;
 use crate::volume::options::GridOptions;
 use anastomesh_mesh::Patch;
@@ -71,7 +71,7 @@ pub(in crate::volume) fn write_mixed(out: &mut (impl Write + Seek), grid: &Mixed
     if has_regions {
         arrays.push(ints(ArrayLocation::CellData, REGION, labels(|cell| cell.block, |face| face.block)));
     }
-    arrays.push(ints(ArrayLocation::CellData, "layer", labels(|cell| cell.layer, |_| 0)));
+    arrays.push(ints(ArrayLocation::CellData, LAYER, labels(|cell| cell.layer, |_| 0)));
     File { kind: "UnstructuredGrid", counts, arrays, raw: options.raw }.write(out)
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Tetrahedra precede the boundary triangles. The `Int32` cell arrays `patch` and `block` hold the labels (the patch of
 //! a tetrahedron is 0). In a mesh with regions, `region` holds the same as `block`, and `region_ids` and `region_names` the
-//! regions. Field data contain the patch names (`patch_names`, indexed by id) and the data for later
+//! regions. A mesh with layers has `layer`: 1 at the wall, 0 outside of layers. Field data contain the patch names (`patch_names`, indexed by id) and the data for later
 //! checks: caps, loops of each component, terminals.
 
 pub(super) mod arrays;
@@ -23,7 +23,7 @@ pub(super) use arrays::PieceArrays;
 pub use error::VtuFault;
 pub use layout::VtuPiecesError;
 pub(super) use mixed::{MixedGrid, write_mixed};
-pub(super) use names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, NODE_ID, REGION};
+pub(super) use names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, LAYER, NODE_ID, REGION};
 pub use pieces::VtuPieces;
 pub(super) use read::{GridReader, read};
 pub use write::write_boundary;

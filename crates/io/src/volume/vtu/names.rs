@@ -29,6 +29,8 @@ pub(in crate::volume) const ELEMENT_ID: &str = "GlobalElementID";
 
 /// Name of the cell array with the region of each cell.
 pub(in crate::volume) const REGION: &str = "region";
+/// Layer of a cell, from 1 at the wall.
+pub(in crate::volume) const LAYER: &str = "layer";
 
 /// Name of the point array with the number of each point in the whole mesh.
 pub(in crate::volume) const GLOBAL_IDS: &str = "GlobalPointIds";

@@ -3,7 +3,7 @@
 use super::super::names::{VTK_TETRA, VTK_TRIANGLE};
 use super::*;
 use crate::volume::fixtures::labelled_tube;
-use crate::volume::options::GridOptions;
+use crate::volume::options::{GridOptions, WriteOptions};
 use crate::volume::vtu::write;
 use crate::vtk_xml::{Packing, write_blocks};
 use anastomesh_mesh::VolumeMesh;
@@ -26,7 +26,7 @@ fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
 
 fn bytes_with(volume: &VolumeMesh, notes: &MeshNotes, options: GridOptions) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes, options, None).unwrap();
+    write(&mut bytes, volume, notes, &WriteOptions::default().grid(options)).unwrap();
     bytes.into_inner()
 }
 

@@ -6,7 +6,7 @@ use super::read::read;
 use super::write::write;
 use crate::volume::content::{MeshFile, MeshNotes};
 use crate::volume::fixtures::labelled_tube;
-use crate::volume::options::GridOptions;
+use crate::volume::options::{GridOptions, WriteOptions};
 use crate::vtk_xml::{Packing, VtkXml, write_blocks};
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::check::Expectation;
@@ -18,7 +18,7 @@ use std::io::Cursor;
 
 fn bytes_of(volume: &VolumeMesh, notes: &MeshNotes) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, volume, notes, GridOptions::default(), None).unwrap();
+    write(&mut bytes, volume, notes, &WriteOptions::default()).unwrap();
     bytes.into_inner()
 }
 
@@ -37,7 +37,7 @@ fn options_change_how_it_stands_in_the_file() {
     let (volume, notes) = labelled_tube(900);
     let read_with = |options| {
         let mut bytes = Cursor::new(Vec::new());
-        write(&mut bytes, &volume, &notes, options, None).unwrap();
+        write(&mut bytes, &volume, &notes, &WriteOptions::default().grid(options)).unwrap();
         read(&bytes.into_inner()).unwrap()
     };
     let usual = GridOptions::default();
@@ -78,7 +78,9 @@ fn values_stand_beside_the_mesh() {
     let height = Column { name: "height", at_points: true, is_integer: false };
     let corners = Column { name: "corners", at_points: false, is_integer: true };
     let mut bytes = Cursor::new(Vec::new());
-    write(&mut bytes, &volume, &notes, GridOptions::default(), Some(&Heights([height, corners]))).unwrap();
+    let heights = Heights([height, corners]);
+    let values: &dyn Beside = &heights;
+    write(&mut bytes, &volume, &notes, &WriteOptions::default().values(values)).unwrap();
     let bytes = bytes.into_inner();
     assert_eq!(read(&bytes).unwrap().volume, volume);
     let xml = VtkXml::parse(&bytes, "UnstructuredGrid").unwrap();

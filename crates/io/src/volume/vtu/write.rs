@@ -3,7 +3,8 @@
 use super::arrays::{self, PieceArrays};
 use super::file::File;
 use crate::volume::content::MeshNotes;
-use crate::volume::options::GridOptions;
+use crate::volume::layers::LayerNumbers;
+use crate::volume::options::{GridOptions, WriteOptions};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::boundary::BoundarySurface;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts};
@@ -19,12 +20,10 @@ pub(in crate::volume) fn write(
     out: &mut (impl Write + Seek),
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
-    options: GridOptions,
-    values: Option<&dyn Beside>,
+    options: &WriteOptions,
 ) -> io::Result<()> {
-    let has_regions = !notes.regions.is_empty();
-    Grid { mesh, notes: Some(notes), has_regions, global_ids: None, solver_ids: None, piece: None, options, values }
-        .write(out)
+    let layers = LayerNumbers::of(mesh, options.layers)?;
+    Grid { layers, values: options.values, ..Grid::of(mesh, notes, options.grid) }.write(out)
 }
 
 /// Contents of a file.
@@ -40,6 +39,8 @@ pub(in crate::volume) struct Grid<'a> {
     pub solver_ids: Option<SolverIds<'a>>,
     /// For a piece with ghost cells: their marks, and numbers in the whole mesh.
     pub piece: Option<PieceArrays<'a>>,
+    /// Layers of the cells, if the mesh has layers.
+    pub layers: Option<LayerNumbers<'a>>,
     pub options: GridOptions,
     /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
@@ -60,7 +61,22 @@ impl<'a> SolverIds<'a> {
     }
 }
 
-impl Grid<'_> {
+impl<'a> Grid<'a> {
+    /// Mesh with its notes.
+    pub(in crate::volume) fn of(mesh: &'a dyn MeshSource, notes: &'a MeshNotes, options: GridOptions) -> Self {
+        Self {
+            mesh,
+            notes: Some(notes),
+            has_regions: !notes.regions.is_empty(),
+            global_ids: None,
+            solver_ids: None,
+            piece: None,
+            layers: None,
+            options,
+            values: None,
+        }
+    }
+
     /// Writes the file.
     pub(in crate::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
         let alone = Recounted::without_boundary(self.mesh);
@@ -70,6 +86,7 @@ impl Grid<'_> {
         all.extend(self.solver_ids.iter().flat_map(|ids| arrays::of_solver(ids.points, ids.cells(self.options))));
         all.extend(self.piece.iter().flat_map(|piece| arrays::of_piece(*piece, mesh.counts().boundary)));
         all.extend(arrays::of_mesh(mesh, self.options.float32, self.has_regions));
+        all.extend(self.layers.map(|layers| arrays::layer_array(layers, mesh.counts())));
         all.extend(self.values.into_iter().flat_map(|values| arrays::of_values(mesh, values)));
         let SourceCounts { points, tets, boundary } = mesh.counts();
         let counts = format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{}\"", tets + boundary);
