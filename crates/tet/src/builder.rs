@@ -62,7 +62,8 @@ pub struct Tetrahedralization {
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty if the input has no markers.
     pub face_markers: Vec<i32>,
-    /// Input triangle of each of `faces`, or the one that it is a piece of. Empty if each face is the input triangle of
+    /// Input triangle of each of `faces`, or the one that it is a piece of; in a plane facet whose edges were flipped, one of
+    /// its triangles. Empty if each face is the input triangle of
     /// the same index, because none was split or left out.
     pub origins: Vec<u32>,
     /// Layer of each tetrahedron, counted from 1 at the wall; 0 inside the layers. Empty in a mesh without layers.
@@ -230,7 +231,7 @@ impl Tetrahedralizer {
         (self.refinement.as_ref(), &self.sizing)
     }
 
-    fn watch(&self) -> Watch<'_> {
+    pub(super) fn watch(&self) -> Watch<'_> {
         self.progress.as_deref().map_or(Watch::NOBODY, |progress| Watch::of(progress))
     }
 

@@ -154,7 +154,8 @@ pub enum Boundary {
     /// Each triangle is a face of the mesh.
     #[default]
     Keep,
-    /// Triangles may be split: each is a union of faces of the mesh.
+    /// Triangles may be split: each is a union of faces of the mesh. If the shape of tetrahedra is bounded, edges between
+    /// coplanar triangles with one marker may be flipped, too: then each plane facet is a union of faces.
     Split,
 }
 

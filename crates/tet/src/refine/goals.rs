@@ -118,7 +118,7 @@ pub(super) fn encroaches(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
 }
 
 /// Circumcentre of four points; `None` if it is not finite.
-pub(super) fn circumcenter(p: [&Point3; 4]) -> Option<Point3> {
+pub(crate) fn circumcenter(p: [&Point3; 4]) -> Option<Point3> {
     let (u, v, w) = (p[1] - p[0], p[2] - p[0], p[3] - p[0]);
     let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
     let c = (vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared()) / (2.0 * uv.dot(&w));

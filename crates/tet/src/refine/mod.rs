@@ -12,6 +12,7 @@ mod wall;
 
 pub use estimate::{estimate_tets, estimate_uniform};
 pub use gaps::limit_by_gaps;
+pub(crate) use goals::circumcenter;
 pub use goals::{Goals, RegionGoals};
 pub use insert::{RefineReport, refine_complex};
 pub use points::{graded_points, surrounding_points};

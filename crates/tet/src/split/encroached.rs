@@ -1,0 +1,97 @@
+//! Pieces that keep tetrahedra from being refined: circumcentres of badly shaped tetrahedra lie in their smallest spheres
+//! (Shewchuk, 'Tetrahedral mesh generation by Delaunay refinement', 1998: encroached subfacets).
+
+use super::pieces::Pieces;
+use crate::progress::{Counter, Watch};
+use crate::refine::circumcenter;
+use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::budget::Stop;
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3};
+
+/// Operations per tetrahedron, as counted by budgets.
+const OPERATIONS: usize = 20;
+
+/// Encroached pieces of a mesh.
+pub(super) struct Encroached {
+    /// Share of the tetrahedra above the ratio.
+    pub share: f64,
+    /// For each piece the smallest of the shortest edges of tetrahedra that encroach it.
+    rooms: Vec<Option<f64>>,
+}
+
+impl Pieces {
+    /// Divides encroached pieces. Returns false if there is no room for any.
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch stops it.
+    pub(super) fn divide_encroached(
+        &mut self,
+        encroached: &Encroached,
+        ratio: f64,
+        most: usize,
+        watch: &Watch,
+    ) -> Result<bool, Stop> {
+        self.changed.clear();
+        let before = self.plc.surface.triangles.clone();
+        for (t, room) in (0..).zip(&encroached.rooms).filter_map(|(t, room)| Some((t, (*room)?))) {
+            let is_same = self.plc.surface.triangles[t as usize] == before[t as usize];
+            if is_same && self.plc.surface.triangles.len() < most {
+                let divided = self.edge_to_divide(t);
+                if self.clearance(divided) >= room {
+                    self.divide(divided);
+                }
+            }
+        }
+        let due = std::mem::take(&mut self.changed);
+        let any = !due.is_empty();
+        self.refine_all(due, ratio, most, watch)?;
+        Ok(any)
+    }
+
+    /// Finds the encroached pieces of a mesh.
+    ///
+    /// # Errors
+    /// [`Stop`] if the watch stops it.
+    pub(super) fn encroached(&self, mesh: &TetMesh, ratio: f64, watch: &Watch) -> Result<Encroached, Stop> {
+        let spheres: Vec<(Point3, f64)> =
+            self.plc.surface.triangles.iter().map(|&t| smallest_sphere(self.corners(t))).collect();
+        let boxes = spheres.iter().map(|(centre, radius)| Aabb { min: *centre, max: *centre }.grown(*radius)).collect();
+        let tree = Bvh::of(boxes);
+        let mut rooms: Vec<Option<f64>> = vec![None; spheres.len()];
+        let mut above = 0;
+        let mut counter = Counter::new(watch);
+        for tet in &mesh.tets {
+            counter.add(OPERATIONS)?;
+            let corners = tet.map(|v| &mesh.points[v as usize]);
+            let Some(centre) = circumcenter(corners) else { continue };
+            let shortest = shortest_edge(corners);
+            if (centre - corners[0]).norm() <= ratio * shortest {
+                continue;
+            }
+            above += 1;
+            tree.query(&Aabb { min: centre, max: centre }, |t| {
+                let (middle, radius) = spheres[t as usize];
+                if (centre - middle).norm() < radius {
+                    let room = &mut rooms[t as usize];
+                    *room = Some(room.map_or(shortest, |room| room.min(shortest)));
+                }
+            });
+        }
+        counter.end()?;
+        Ok(Encroached { share: f64::from(above) / mesh.tets.len().max(1) as f64, rooms })
+    }
+}
+
+fn shortest_edge(corners: [&Point3; 4]) -> f64 {
+    let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs.map(|(i, j)| (corners[i] - corners[j]).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Centre and radius of the circumcircle of a triangle; of no size if it is not finite.
+fn smallest_sphere([a, b, c]: [Point3; 3]) -> (Point3, f64) {
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(&v);
+    let offset =
+        (v.cross(&normal) * -u.norm_squared() + u.cross(&normal) * v.norm_squared()) / (-2.0 * normal.norm_squared());
+    if offset.iter().all(|x| x.is_finite()) { (a + offset, offset.norm()) } else { (a, 0.0) }
+}
