@@ -25,8 +25,8 @@ const RATIO: [f64; 2] = [1.15, 2.0];
 /// Maximum pieces for the sake of shape: a number, and a number per triangle.
 const MAX_PIECES: [usize; 2] = [10_000, 20];
 
-/// Maximum meshes by which encroached pieces are found.
-const MAX_DRAFTS: usize = 4;
+/// Maximum divisions of encroached pieces.
+const MAX_DIVISIONS: usize = 3;
 
 /// Share of tetrahedra above the ratio below which no piece is divided for them. TetGen leaves more on most surfaces.
 const ENOUGH: f64 = 0.03;
@@ -92,36 +92,33 @@ impl Tetrahedralizer {
         let wanted = bounds.max_radius_edge.or(bounds.min_dihedral.map(|_| RATIO[1]));
         let Some(ratio) = wanted.map(|ratio| ratio.max(RATIO[0])) else { return run(&keep, &pieces) };
         let plain = pieces.clone();
-        match self.improved(&keep, &mut pieces, ratio).and_then(|()| run(&keep, &pieces)) {
+        match self.improved(&keep, &mut pieces, ratio) {
             // Rounding may make facets intersect that almost touch.
             Err(error) if !error.is_stop() => run(&keep, &plain),
             done => done,
         }
     }
 
-    /// Improves the pieces for tetrahedra with this ratio of circumradius to shortest edge. Encroached pieces are divided as long
-    /// as the share of tetrahedra above it falls.
-    fn improved(&self, keep: &Self, pieces: &mut Pieces, ratio: f64) -> Result<(), TetError> {
+    /// Meshes the pieces after improving them for tetrahedra with this ratio of circumradius to shortest edge. Encroached pieces
+    /// are divided, and meshed again, as long as the share of tetrahedra above it falls.
+    fn improved(&self, keep: &Self, pieces: &mut Pieces, ratio: f64) -> Result<Tetrahedralization, TetError> {
         let most = MAX_PIECES[0] + MAX_PIECES[1] * pieces.plc.surface.triangles.len();
         let watch = self.watch();
         pieces.improve(ratio, most, &watch)?;
-        let draft = keep.clone().optimize(false);
-        let mut best: Option<(f64, Pieces)> = None;
-        for _ in 0..MAX_DRAFTS {
-            let mesh = draft.run(&pieces.plc)?.mesh;
-            let encroached = pieces.encroached(&mesh, ratio, &watch)?;
-            if best.as_ref().is_some_and(|(share, _)| encroached.share >= *share) {
-                break;
-            }
-            best = Some((encroached.share, pieces.clone()));
+        let mut best = run(keep, pieces)?;
+        let mut encroached = pieces.encroached(&best.mesh, ratio, &watch)?;
+        for _ in 0..MAX_DIVISIONS {
             if encroached.share <= ENOUGH || !pieces.divide_encroached(&encroached, ratio, most, &watch)? {
                 break;
             }
+            let next = run(keep, pieces)?;
+            let after = pieces.encroached(&next.mesh, ratio, &watch)?;
+            if after.share >= encroached.share {
+                break;
+            }
+            (best, encroached) = (next, after);
         }
-        if let Some((_, kept)) = best {
-            *pieces = kept;
-        }
-        Ok(())
+        Ok(best)
     }
 }
 
