@@ -155,7 +155,7 @@ pub enum Boundary {
     #[default]
     Keep,
     /// Triangles may be split: each is a union of faces of the mesh. If the shape of tetrahedra is bounded, edges between
-    /// coplanar triangles with one marker may be flipped, too: then each plane facet is a union of faces.
+    /// coplanar triangles with one marker may be flipped, too. Then each plane facet is a union of faces.
     Split,
 }
 

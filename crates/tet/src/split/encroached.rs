@@ -1,5 +1,5 @@
-//! Pieces that keep tetrahedra from being refined: circumcentres of badly shaped tetrahedra lie in their smallest spheres
-//! (Shewchuk, 'Tetrahedral mesh generation by Delaunay refinement', 1998: encroached subfacets).
+//! Pieces that keep tetrahedra from being refined: circumcentres of badly shaped tetrahedra lie in their smallest spheres.
+//! These are the encroached subfacets of Shewchuk, 'Tetrahedral mesh generation by Delaunay refinement', 1998.
 
 use super::pieces::Pieces;
 use crate::progress::{Counter, Watch};

@@ -78,8 +78,8 @@ impl Pieces {
     }
 
     /// Point at which an edge is divided: at the middle, or at a power of two from an input vertex on a crease. Creases that
-    /// meet at a small angle are then divided at equal distances, which ends (Ruppert, 'A Delaunay refinement algorithm for
-    /// quality 2-dimensional mesh generation', 1995: concentric shells).
+    /// meet at a small angle are then divided at equal distances, so that the refinement ends. These are the concentric shells of
+    /// Ruppert, 'A Delaunay refinement algorithm for quality 2-dimensional mesh generation', 1995.
     pub(super) fn dividing(&self, e: [u32; 2]) -> Point3 {
         let Some(&from) = e.iter().find(|&&v| (v as usize) < self.given_points) else { return self.middle(e) };
         let length = self.length(e);

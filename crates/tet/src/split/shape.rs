@@ -2,9 +2,9 @@
 //! by their longest edges.
 //!
 //! A facet is a set of coplanar triangles with one marker. Its triangulation is Delaunay if at no edge the two opposite
-//! angles exceed 180° (Lawson, 'Software for C1 surface interpolation', 1977). A badly shaped piece is refined by the
-//! midpoint of the terminal edge of its longest-edge path (Rivara, 'New longest-edge algorithms for the refinement and/or
-//! improvement of unstructured triangulations', 1997).
+//! angles exceed 180° (Lawson, 'Software for C1 surface interpolation', 1977). A badly shaped piece gets
+//! the midpoint of the terminal edge of its longest-edge path. The path is that of Rivara, 'New longest-edge algorithms for the
+//! refinement and/or improvement of unstructured triangulations', 1997.
 
 use super::pieces::{Pieces, edge, edges_of};
 use crate::progress::{Counter, Watch};
@@ -296,7 +296,7 @@ mod tests {
 
     fn improved(plc: &Plc) -> Pieces {
         let mut pieces = Pieces::new(plc.clone());
-        pieces.improve(1.4, usize::MAX, &Watch::NOBODY).expect("nobody stops it");
+        pieces.improve(1.4, 100_000, &Watch::NOBODY).expect("not stopped");
         let (before, after) = (sizes(plc), sizes(&pieces.plc));
         for (x, y) in before.0.iter().zip(&after.0) {
             assert!((x - y).abs() <= 1e-9 * before.0.iter().sum::<f64>(), "{before:?} {after:?}");
@@ -350,7 +350,7 @@ mod tests {
     fn a_stop_ends_it() {
         let mut pieces = Pieces::new(prism(&[0.0, 1e-3, 2.0, 4.0], 1e-3));
         let stops = anastomesh_mesh::progress::StopsAfter::new(0);
-        assert!(pieces.improve(1.4, usize::MAX, &Watch::of(&stops)).is_err());
+        assert!(pieces.improve(1.4, 100_000, &Watch::of(&stops)).is_err());
     }
 
     proptest! {
