@@ -96,12 +96,13 @@ impl Pieces {
     pub(super) fn halve(&mut self, e: [u32; 2]) -> bool {
         let (middle, is_flat) = (self.dividing(e), self.is_flat(e));
         let ends = e.map(|v| self.plc.surface.points[v as usize]);
-        let segment = self.segments.remove(&e);
-        let triangles = self.at_edge.remove(&e).unwrap_or_default();
-        let full = self.plc.surface.triangles.len() + triangles.len() > MAX_TRIANGLES;
-        if ends.contains(&middle) || full || (triangles.is_empty() && segment.is_none()) {
+        let count = self.at_edge.get(&e).map_or(0, Vec::len);
+        let full = self.plc.surface.triangles.len() + count > MAX_TRIANGLES;
+        if ends.contains(&middle) || full || (count == 0 && !self.segments.contains_key(&e)) {
             return false;
         }
+        let segment = self.segments.remove(&e);
+        let triangles = self.at_edge.remove(&e).unwrap_or_default();
         let m = self.plc.surface.points.len() as u32;
         self.plc.surface.points.push(middle);
         let [a, b] = e;
