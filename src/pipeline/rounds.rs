@@ -29,7 +29,7 @@ use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{BranchId, Overlaps};
 use anastomesh_tet::parts::Watch;
 
-/// Maximum changes of the partition because of blocks that fail, and because of clusters that are known to fail.
+/// Maximum changes of the partition because of blocks that failed, and as many because of clusters that are known to fail.
 const MAX_PARTITION_CHANGES: usize = 6;
 
 /// Environment of a run.
@@ -60,10 +60,10 @@ impl RunContext<'_> {
         let together = self.together();
         let mut retries = Vec::new();
         let mut told = BTreeSet::new();
-        let (mut round, mut early) = (0, 0);
+        let (mut round, mut foreseen) = (0, 0);
         loop {
             let partition = self.partition(&cures, &together)?;
-            if round + early == 0 {
+            if round + foreseen == 0 {
                 let estimate = Estimate::of(&partition, self.shop.plan);
                 self.shop.store.ledger().expect(estimate.operations);
                 fits(&estimate)?;
@@ -71,11 +71,11 @@ impl RunContext<'_> {
                     sizes::announce(self.shop.skeleton, &partition, self.shop.plan, self.progress);
                 }
             }
-            if early < MAX_PARTITION_CHANGES {
+            if foreseen < MAX_PARTITION_CHANGES {
                 let found = cure_too_fine(self.shop.skeleton, &partition, self.shop.plan, &mut cures);
                 if !found.is_empty() {
                     retries.extend(found);
-                    early += 1;
+                    foreseen += 1;
                     continue;
                 }
             }

@@ -63,8 +63,7 @@ pub struct Tetrahedralization {
     /// Marker of each of `faces`; empty if the input has no markers.
     pub face_markers: Vec<i32>,
     /// Input triangle of each of `faces`, or the one that it is a piece of. In a plane facet whose edges were flipped, it is one
-    /// of its triangles. Empty if each face is the input triangle of
-    /// the same index, because none was split or left out.
+    /// of the facet's triangles. Empty if each face is the input triangle of the same index, because none was split or left out.
     pub origins: Vec<u32>,
     /// Layer of each tetrahedron, counted from 1 at the wall; 0 inside the layers. Empty in a mesh without layers.
     pub layers: Vec<i32>,

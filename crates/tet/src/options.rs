@@ -155,7 +155,8 @@ pub enum Boundary {
     #[default]
     Keep,
     /// Triangles may be split: each is a union of faces of the mesh. If the shape of tetrahedra is bounded, edges between
-    /// coplanar triangles with one marker may be flipped, too. Then each plane facet is a union of faces.
+    /// coplanar triangles with one marker may be flipped, too. Then each plane facet is a union of faces. Triangles count as
+    /// coplanar within 1e-4 of their longest edge.
     Split,
 }
 

@@ -105,16 +105,17 @@ impl Goals<'_> {
 }
 
 /// True if a point lies in the smallest sphere through the corners of a triangle.
-pub(super) fn encroaches(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
+pub(super) fn encroaches(p: &Point3, corners: [&Point3; 3]) -> bool {
+    smallest_sphere(corners).is_some_and(|(center, square)| (p - center).norm_squared() < square)
+}
+
+/// Centre and squared radius of the smallest sphere through the corners of a triangle; `None` for a triangle without area.
+pub(crate) fn smallest_sphere([a, b, c]: [&Point3; 3]) -> Option<(Point3, f64)> {
     let (u, v) = (b - a, c - a);
     let normal = u.cross(&v);
     let area = normal.norm_squared();
-    if area == 0.0 {
-        return false;
-    }
     let offset = (v.cross(&normal) * -u.norm_squared() + u.cross(&normal) * v.norm_squared()) / (-2.0 * area);
-    let center = a + offset;
-    (p - center).norm_squared() < offset.norm_squared()
+    (area > 0.0).then(|| (a + offset, offset.norm_squared()))
 }
 
 /// Circumcentre of four points; `None` if it is not finite.

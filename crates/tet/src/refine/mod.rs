@@ -12,8 +12,8 @@ mod wall;
 
 pub use estimate::{estimate_tets, estimate_uniform};
 pub use gaps::limit_by_gaps;
-pub(crate) use goals::circumcenter;
-pub use goals::{Goals, RegionGoals};
+pub use goals::{Fault, Goals, RegionGoals};
+pub(crate) use goals::{circumcenter, smallest_sphere};
 pub use insert::{RefineReport, refine_complex};
 pub use points::{graded_points, surrounding_points};
 pub use sizes::SizeLimit;

@@ -3,10 +3,10 @@
 
 use super::pieces::Pieces;
 use crate::progress::{Counter, Watch};
-use crate::refine::circumcenter;
-use anastomesh_mesh::TetMesh;
+use crate::refine::{Fault, Goals, circumcenter, smallest_sphere};
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3};
+use anastomesh_mesh::{Bounds, TetMesh};
 
 /// Operations per tetrahedron, as counted by budgets.
 const OPERATIONS: usize = 20;
@@ -53,25 +53,25 @@ impl Pieces {
     /// # Errors
     /// [`Stop`] if the watch stops it.
     pub(super) fn encroached(&self, mesh: &TetMesh, ratio: f64, watch: &Watch) -> Result<Encroached, Stop> {
-        let spheres: Vec<(Point3, f64)> =
-            self.plc.surface.triangles.iter().map(|&t| smallest_sphere(self.corners(t))).collect();
-        let boxes = spheres.iter().map(|(centre, radius)| Aabb { min: *centre, max: *centre }.grown(*radius)).collect();
-        let tree = Bvh::of(boxes);
+        // A piece without area has no sphere.
+        let sphere = |&t: &[u32; 3]| smallest_sphere(self.corners(t).each_ref()).unwrap_or((self.corners(t)[0], 0.0));
+        let spheres: Vec<(Point3, f64)> = self.plc.surface.triangles.iter().map(sphere).collect();
+        let grown = |(centre, square): &(Point3, f64)| Aabb { min: *centre, max: *centre }.grown(square.sqrt());
+        let tree = Bvh::of(spheres.iter().map(grown).collect());
+        let bounds = Bounds { max_radius_edge: Some(ratio), ..Bounds::default() };
+        let goals = Goals { bounds, ..Goals::default() };
         let mut rooms: Vec<Option<f64>> = vec![None; spheres.len()];
         let mut above = 0;
         let mut counter = Counter::new(watch);
         for tet in &mesh.tets {
             counter.add(OPERATIONS)?;
             let corners = tet.map(|v| &mesh.points[v as usize]);
-            let Some(centre) = circumcenter(corners) else { continue };
-            let shortest = shortest_edge(corners);
-            if (centre - corners[0]).norm() <= ratio * shortest {
-                continue;
-            }
+            let Some(Fault { spacing: shortest, .. }) = goals.fault(corners, None) else { continue };
             above += 1;
+            let Some(centre) = circumcenter(corners) else { continue };
             tree.query(&Aabb { min: centre, max: centre }, |t| {
-                let (middle, radius) = spheres[t as usize];
-                if (centre - middle).norm() < radius {
+                let (middle, square) = spheres[t as usize];
+                if (centre - middle).norm_squared() < square {
                     let room = &mut rooms[t as usize];
                     *room = Some(room.map_or(shortest, |room| room.min(shortest)));
                 }
@@ -80,18 +80,4 @@ impl Pieces {
         counter.end()?;
         Ok(Encroached { share: f64::from(above) / mesh.tets.len().max(1) as f64, rooms })
     }
-}
-
-fn shortest_edge(corners: [&Point3; 4]) -> f64 {
-    let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
-    pairs.map(|(i, j)| (corners[i] - corners[j]).norm()).fold(f64::INFINITY, f64::min)
-}
-
-/// Centre and radius of the circumcircle of a triangle; of no size if it is not finite.
-fn smallest_sphere([a, b, c]: [Point3; 3]) -> (Point3, f64) {
-    let (u, v) = (b - a, c - a);
-    let normal = u.cross(&v);
-    let offset =
-        (v.cross(&normal) * -u.norm_squared() + u.cross(&normal) * v.norm_squared()) / (-2.0 * normal.norm_squared());
-    if offset.iter().all(|x| x.is_finite()) { (a + offset, offset.norm()) } else { (a, 0.0) }
 }
