@@ -14,13 +14,14 @@ use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 
 /// Operations of a strategy in the first round: per missing edge or triangle, plus a constant.
-const OPERATIONS: (u64, u64) = (7_500, 2_500_000);
+const OPERATIONS: (u64, u64) = (2_500, 2_500_000);
 
 /// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 2;
 
-/// Factor of the budget for strategies that recover edges in planes first. These take most of the time there, and pay off.
-const LEVEL_SHARE: u64 = 4;
+/// Missing edges and triangles from which a surface in planes starts without flat tetrahedra. Exchanges in planes then take
+/// less time than cavities for each edge.
+const MANY: usize = 1_000;
 
 /// Maximum rounds over all strategies.
 const MAX_ROUNDS: u32 = 6;
@@ -46,6 +47,9 @@ const MAX_POOR: u32 = 2;
 /// Maximum parts left for a repetition of the start: a constant, or this fraction of the parts that flips left.
 const FEWER: (usize, f64) = (64, 0.002);
 
+/// Budget, relative to that of the round, from which a start is repeated. Most parts succeed with a larger budget.
+const RESTART_FROM: u64 = 4;
+
 /// Maximum repetitions of a start with the parts first that it has left.
 const MAX_RESTARTS: u32 = 3;
 
@@ -53,7 +57,7 @@ const MAX_RESTARTS: u32 = 3;
 const THOROUGH: u64 = 64;
 
 /// Maximum operations of all rounds: per triangle of the surface, plus a constant.
-const MAX_OPERATIONS: (u64, u64) = (100_000, 2_000_000_000);
+const MAX_OPERATIONS: (u64, u64) = (50_000, 1_000_000_000);
 
 /// A complex to start from, and the strategies to try there.
 struct Attempt<'a> {
@@ -125,7 +129,8 @@ pub(super) fn recover_rest(
     let filled_thick = turned.map(|height| filled(Some(height), &RecoveryStrategy::TURNED));
     let filled = filled(None, &RecoveryStrategy::GIVEN);
     let mut attempts: Vec<Attempt> = Vec::new();
-    if edges_turned {
+    let many = edges.len() + missing.triangles.len() >= MANY;
+    if edges_turned || (is_turned && many) {
         attempts.extend(turned.map(thick).into_iter().chain(filled_thick));
         attempts.extend([given, filled]);
     } else {
@@ -242,7 +247,9 @@ impl<'a> Attempt<'a> {
             if done.is_some() || effort.left == 0 || !self.leaves(FEW) || self.has_stalled(before) {
                 return Ok(done);
             }
-            if let Some(done) = self.restart(r, points, share * further, effort)? {
+            if further >= RESTART_FROM
+                && let Some(done) = self.restart(r, points, share * further, effort)?
+            {
                 return Ok(Some(done));
             }
             before = self.missing();
@@ -313,8 +320,7 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let room = if way.level.is_some() { LEVEL_SHARE } else { 1 };
-            let budget = Budget::new(room * share * (OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1));
+            let budget = Budget::new(share * (OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
             effort.left = effort.left.saturating_sub(budget.spent());

@@ -18,6 +18,9 @@ const MAX_PASSES: usize = 8;
 /// Maximum edges at one vertex to flip away, and to try, in one pass.
 const MAX_FLIPS: usize = 24;
 
+/// Maximum tetrahedra at a vertex whose edges are flipped away. Each flip removes few, and each search visits all.
+const MAX_STAR: usize = 200;
+
 /// Operations per vertex and pass, as counted by budgets.
 const OPERATIONS: usize = 500;
 
@@ -89,10 +92,10 @@ impl Removal {
     }
 
     /// Neighbours of a vertex, with the size of the ring around the edge and one of its tetrahedra; `None` on the
-    /// boundary.
+    /// boundary, and for more than [`MAX_STAR`] tetrahedra.
     fn neighbors(&mut self, c: &Complex, v: u32) -> Option<Vec<(usize, u32, u32)>> {
         let star = self.star.around(c, v);
-        if star.iter().any(|&t| c.is_ghost(t)) {
+        if star.len() > MAX_STAR || star.iter().any(|&t| c.is_ghost(t)) {
             return None;
         }
         let mut ends: Vec<(u32, u32)> =

@@ -62,6 +62,7 @@ impl Course {
         // The ends of the segment limit the position, too.
         let mut low = Height { at: -self.from * size, slope: size, half: None };
         let mut high = Height { at: size, slope: -size, half: None };
+        s.count(2 * walls.len());
         let heights: Vec<Height> = walls.iter().map(|&half| self.height(s, half)).collect();
         let mut share = low.meets(&high);
         let mut depth = low.at + low.slope * share;

@@ -11,6 +11,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// Bits of a weight below the leading bit of its interval's length.
 const BITS: u32 = 4;
 
+/// Work of an exact parameter on a segment.
+const PARAMETER: usize = 30;
+
 /// Maximum growth steps of a cavity.
 const STEPS: usize = 32;
 
@@ -75,6 +78,7 @@ impl Sight {
         if inside == [true; 2] {
             return Self::Everywhere;
         }
+        s.count(PARAMETER);
         let weight = || implicit::parameter([x, z, y].map(|v| s.site(v)), ends.map(|v| s.site(v)));
         match inside {
             [true, false] => weight().map_or(Self::Nowhere, Self::Before),

@@ -14,6 +14,9 @@ const SHARES: [f64; 9] = [1.0, 0.7, 0.5, 0.3, 0.15, 0.05, 0.01, 1e-3, 1e-4];
 /// Roundoff error of distances, relative to the size.
 const ROUNDOFF: f64 = 1e-14;
 
+/// Work of a linear program, without constraints.
+const LP: usize = 60;
+
 /// Maximum pivots of a linear program. Ten are typical.
 const EXCHANGES: usize = 100;
 
@@ -38,6 +41,7 @@ pub(super) struct Kernel<'a> {
 
 impl<'a> Kernel<'a> {
     pub(super) fn new(s: &Space, origin: Point3, faces: &'a [[u32; 3]]) -> Self {
+        s.count(faces.len());
         let mut planes = Vec::with_capacity(faces.len());
         let mut size = 0.0_f64;
         for f in faces {
@@ -100,7 +104,8 @@ impl<'a> Kernel<'a> {
     }
 
     /// Faces closest to the deepest point, at most four, and the depth relative to the size.
-    pub(super) fn bounds(&self) -> Option<(Vec<usize>, f64)> {
+    pub(super) fn bounds(&self, s: &Space) -> Option<(Vec<usize>, f64)> {
+        s.count(LP + 10 * self.planes.len());
         let highest = highest(&constraints(&self.planes, self.size))?;
         let faces = highest.tight.iter().filter_map(|i| i.checked_sub(BOUNDS)).collect();
         Some((faces, highest.x[3]))
@@ -109,6 +114,7 @@ impl<'a> Kernel<'a> {
     /// Point that sees all faces and lies as far as possible in direction `up`, with clearance of at least `least`
     /// times the size. Between steep faces it is higher than the deepest point and leaves more clearance below.
     pub(super) fn tallest(&self, s: &Space, up: &Vec3, least: f64) -> Option<Point3> {
+        s.count(2 * (LP + 10 * self.planes.len()));
         let mut constraints = constraints(&self.planes, self.size);
         let deepest = highest(&constraints)?.x[3];
         let kept = least.max(KEPT * deepest);
@@ -128,6 +134,7 @@ impl<'a> Kernel<'a> {
     /// Point that sees all faces with a clearance of at least `least` times the size. The error is the largest possible
     /// clearance relative to the size, if a search for less may succeed.
     pub(super) fn place(&self, s: &Space, least: f64) -> Result<Point3, f64> {
+        s.count(LP + 10 * self.planes.len());
         let Highest { x, .. } = highest(&constraints(&self.planes, self.size)).ok_or(f64::NEG_INFINITY)?;
         let (aim, depth) = (x.xyz() * self.size, x[3]);
         if depth < least {

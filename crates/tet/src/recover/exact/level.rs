@@ -10,7 +10,7 @@ use super::plane::{Patch, Plane};
 use super::push::Push;
 use super::sectors::{Sector, refill};
 use super::space::Space;
-use super::ways::OPERATIONS;
+use super::ways::operations;
 use super::wider::Wider;
 use crate::error::TetError;
 use crate::input::SurfaceEdges;
@@ -105,8 +105,6 @@ pub(super) struct Level<'a> {
     thin: f64,
     /// Cached planes of missing facets, with the areas they were estimated from.
     planes: FxHashMap<[u32; 3], (f64, Plane)>,
-    /// Exchanges tried and not yet counted.
-    exchanges: usize,
     /// New vertices that lie in no plane.
     pub made: Vec<u32>,
     /// New vertices in planes.
@@ -148,7 +146,7 @@ pub(super) fn level_out(
         };
         let mut again = Vec::new();
         for (tried, edge) in left.into_iter().enumerate() {
-            watch.spend(OPERATIONS * (1 + std::mem::take(&mut level.exchanges)))?;
+            watch.spend(operations(level.s))?;
             if !level.insert(edge) {
                 again.push(edge);
             }
@@ -192,7 +190,6 @@ impl<'a> Level<'a> {
             clearance: 0.0,
             thin: 0.0,
             planes: FxHashMap::default(),
-            exchanges: 0,
             made: Vec::new(),
             inside: Vec::new(),
             within: FxHashSet::default(),
@@ -270,7 +267,6 @@ impl<'a> Level<'a> {
                 return false;
             }
             work -= 1;
-            self.exchanges += 1;
             let flat = self.quadrilateral(edge, plane);
             let convex = flat.filter(|q| self.convex(q, plane) && self.is_edge_allowed(q.across, q.edge, [a, b]));
             let Some(Diagonal { across: [x, y], .. }) = convex.filter(|q| self.exchange(q)) else {

@@ -4,7 +4,7 @@ use super::facets::cover;
 use super::helpers::add_helpers;
 use super::parts::Part;
 use super::push::Push;
-use super::ways::OPERATIONS;
+use super::ways::operations;
 use crate::delaunay::hash;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::progress::Watch;
@@ -56,11 +56,9 @@ pub(super) fn recover_part(
     budget: usize,
     watch: &Watch,
 ) -> Result<(), TetError> {
-    let mut counted = push.s.implicit_vertices();
-    let mut spend = |push: &Push, on: Obstacle| {
+    let spend = |push: &Push, on: Obstacle| {
         let vertices = push.s.implicit_vertices();
-        watch.spend(OPERATIONS * (1 + vertices - counted))?;
-        counted = vertices;
+        watch.spend(operations(&push.s))?;
         let over = vertices > budget;
         if over { Err(TetError::Stuck { part: on, reason: Stuck::Budget }) } else { Ok(()) }
     };

@@ -10,7 +10,7 @@ use super::parts::sides;
 use super::sectors::{Fan, Sector, refill, sectors};
 use super::segments::Segments;
 use super::space::{self, Space};
-use super::ways::OPERATIONS;
+use super::ways::operations;
 use super::wider::Wider;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::progress::Watch;
@@ -274,7 +274,7 @@ impl<'a> Push<'a> {
         for &(host, v) in left.iter() {
             let least = LEVELS[level];
             if self.looks.worth(v, least, way) {
-                watch.spend(OPERATIONS)?;
+                watch.spend(operations(&self.s))?;
                 match self.push(host, v, least, way)? {
                     Pushed::Off => continue,
                     Pushed::Not { room } => self.looks.found(v, room, way),

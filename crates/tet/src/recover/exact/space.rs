@@ -5,10 +5,14 @@ use crate::star::{EdgeRing, Star};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle, Site};
 use anastomesh_mesh::geometry::predicates;
+use std::cell::Cell;
 use std::cmp::Ordering;
 
 /// Maximum tetrahedra of a cavity that is searched without sorting.
 const SMALL: usize = 16;
+
+/// Work of a predicate with implicit points.
+const IMPLICIT: usize = 4;
 
 /// A complex that stores implicit points by their rounded coordinates.
 #[derive(Clone)]
@@ -24,6 +28,8 @@ pub(super) struct Space {
     star: Star,
     /// Former definitions of points moved since [`Space::record`].
     moved: Vec<(usize, OnTriangle)>,
+    /// Work since the last call of [`Space::take_work`].
+    work: Cell<usize>,
 }
 
 /// State to which [`Space::undo`] returns.
@@ -35,7 +41,27 @@ pub(super) struct Mark {
 impl Space {
     pub(super) fn new(c: Complex, flat: f64) -> Self {
         let place = vec![NONE; c.points.len()];
-        Self { c, flat, on: Vec::new(), place, created: Vec::new(), star: Star::default(), moved: Vec::new() }
+        Self {
+            c,
+            flat,
+            on: Vec::new(),
+            place,
+            created: Vec::new(),
+            star: Star::default(),
+            moved: Vec::new(),
+            work: Cell::new(0),
+        }
+    }
+
+    /// Counts work, in units of one exact predicate on given points.
+    #[inline]
+    pub(super) fn count(&self, work: usize) {
+        self.work.set(self.work.get() + work);
+    }
+
+    /// Returns the work counted since the last call.
+    pub(super) fn take_work(&self) -> usize {
+        self.work.take()
     }
 
     /// Records all changes until [`Space::keep`] or [`Space::undo`].
@@ -135,6 +161,7 @@ impl Space {
         if !walls.iter().all(sees) {
             return None;
         }
+        self.count(IMPLICIT * walls.len());
         let v = self.c.add_point(at);
         self.place.push(self.on.len() as u32);
         self.on.push(on);
@@ -178,6 +205,7 @@ impl Space {
 
     /// Half-faces of the given tetrahedra with their mate outside.
     pub(super) fn outer(&self, cavity: &[u32]) -> Vec<u32> {
+        self.count(cavity.len());
         let halves = cavity.iter().flat_map(|&t| 4 * t..4 * t + 4);
         if cavity.len() <= SMALL {
             return halves.filter(|&half| !cavity.contains(&(self.c.mate(half) >> 2))).collect();
@@ -202,8 +230,10 @@ impl Space {
     #[inline]
     pub(super) fn orient(&self, v: [u32; 4]) -> i32 {
         if v.iter().any(|&x| self.is_implicit(x)) {
+            self.count(IMPLICIT);
             return implicit::orient3d(v.map(|x| self.site(x)));
         }
+        self.count(1);
         let [a, b, c, d] = v.map(|x| self.point(x));
         let o = predicates::orient3d(a, b, c, d);
         i32::from(o > 0.0) - i32::from(o < 0.0)
@@ -212,6 +242,7 @@ impl Space {
     /// Exact sign of the orientation of three vertices and a point.
     #[inline]
     pub(super) fn orient_to(&self, [a, b, c]: [u32; 3], p: &Point3) -> i32 {
+        self.count(IMPLICIT);
         implicit::orient3d([self.site(a), self.site(b), self.site(c), Site { at: p, on: None }])
     }
 

@@ -60,8 +60,10 @@ impl<'a> Wider<'a> {
             f.contains(&w) || (unit_normal(a, b, c).dot(&(p - a)) > least && s.orient([f[0], f[1], f[2], w]) > 0)
         };
         let facets = &sector.faces[sector.halves.len()..];
+        s.count(sector.faces.len());
         let before = self.cavity.len();
         let halves = if facets.iter().all(|&f| sees(f)) { self.grow(&sector.halves, sees, *steps) } else { None };
+        s.count(4 * (self.cavity.len() - before));
         *steps -= self.cavity.len() - before;
         let wide = halves.map(|halves| {
             let faces = halves.iter().map(|&half| s.wall(half)).chain(facets.iter().copied()).collect();
@@ -123,13 +125,13 @@ impl<'a> Wider<'a> {
 
     /// Adds the tetrahedron behind the limiting face that gains most clearance. Returns false if there is none.
     fn step(&mut self, sector: &mut Sector) -> bool {
-        let Some((walls, _)) = Kernel::new(self.s, self.origin, &sector.faces).bounds() else { return false };
+        let Some((walls, _)) = Kernel::new(self.s, self.origin, &sector.faces).bounds(self.s) else { return false };
         let mut best: Option<(f64, u32, Sector)> = None;
         for wall in walls {
             let Some(half) = sector.halves.get(wall) else { continue };
             let next = self.s.c.mate(*half) >> 2;
             let Some(wider) = self.add(sector, next) else { continue };
-            let Some((_, depth)) = Kernel::new(self.s, self.origin, &wider.faces).bounds() else { continue };
+            let Some((_, depth)) = Kernel::new(self.s, self.origin, &wider.faces).bounds(self.s) else { continue };
             if best.as_ref().is_none_or(|b| depth > b.0) {
                 best = Some((depth, next, wider));
             }
