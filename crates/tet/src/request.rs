@@ -27,6 +27,9 @@ pub(super) struct Request<'a> {
     pub interior: &'a Interior,
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
+    /// Height wanted for the first tetrahedra at each point of the surface, where it is more than that of a regular
+    /// tetrahedron at its edges. Empty without layers.
+    pub heights: &'a [f64],
     pub optimize: bool,
     /// True if the mesh is to be certified against the surface.
     pub certify: bool,

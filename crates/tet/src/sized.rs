@@ -34,6 +34,9 @@ const SCAFFOLD_MARGIN: f64 = 0.1;
 /// Maximum points of the scaffold inside, per point of the surface.
 const SCAFFOLD_POINTS: f64 = 20.0;
 
+/// Height of the regular tetrahedron, in edge lengths.
+const REGULAR_HEIGHT: f64 = 0.816;
+
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
 
@@ -94,7 +97,10 @@ fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
 /// Size field of a surface. `longest` bounds all edge lengths.
 fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeOptions) -> Option<SizeTree> {
     let function;
+    let first: Vec<f64> =
+        wall.heights.iter().zip(&wall.sizes).map(|(height, size)| size.max(height / REGULAR_HEIGHT)).collect();
     let mut limits: Vec<SizeLimit> = longest.map(SizeLimit::Constant).into_iter().collect();
+    limits.extend((!first.is_empty()).then_some(SizeLimit::PerVertex(&first)));
     match sizing {
         Sizing::Surface => {}
         Sizing::Constant(size) => limits.push(SizeLimit::Constant(*size)),
@@ -119,7 +125,7 @@ fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
 
 /// Wall of a run, with the edge lengths of the surface.
 fn wall_of<'a>(r: &Request<'a>, clearance: f64) -> Wall<'a> {
-    Wall { baffles: r.baffles, ..Wall::new(r.surface, r.kind, clearance) }
+    Wall { baffles: r.baffles, heights: r.heights, ..Wall::new(r.surface, r.kind, clearance) }
 }
 
 /// Interior points of a run on a graded lattice; `None` if interior and sizing ask for others.

@@ -144,7 +144,9 @@ impl Input {
             self.regions_of(id).ok_or_else(|| missing("--region-growth", id))?.for_each(|r| r.growth = Some(growth));
         }
         for &id in &plan.layers_in {
-            self.regions_of(id).ok_or_else(|| missing("--layers-in", id))?;
+            if self.regions_of(id).is_none() {
+                return Err(missing("--layers-in", id));
+            }
         }
         Ok(())
     }

@@ -44,6 +44,7 @@ fn with_request<T>(surface: &TriMesh, run: impl FnOnce(&Request) -> T) -> T {
         interior: &Interior::None,
         refinement: None,
         sizing: &Sizing::Surface,
+        heights: &[],
         optimize: false,
         certify: true,
         spare_needles: true,

@@ -246,7 +246,7 @@ fn options_hold_in_each_region() {
         made.regions.iter().zip(&made.layers).filter(|(region, layer)| **region == id && **layer == 0).count()
     };
     let usual = with_layers().run(&plc).expect("certified");
-    plc.regions[0] = plc.regions[0].size(0.15);
+    plc.regions[0] = plc.regions[0].size(0.1);
     // A seed in the layers counts, too.
     plc.regions[0].seed.x = 0.95;
     let fine = with_layers().run(&plc).expect("certified");
@@ -273,4 +273,37 @@ fn threads_do_not_change_the_mesh() {
         pool.install(|| with_layers().layers_on(vec![1]).run(&plc).expect("certified"))
     };
     assert_eq!(run(1), run(4));
+}
+
+/// Mean ratio of the volumes of the two tetrahedra at faces between the last layer and the core of a region.
+fn mean_step(made: &Tetrahedralization, id: i32) -> f64 {
+    let last = made.layers.iter().copied().max().unwrap_or(0);
+    let volume = |tet: &[u32; 4]| {
+        let [a, b, c, d] = tet.map(|v| made.mesh.points[v as usize]);
+        (b - a).cross(&(c - a)).dot(&(d - a))
+    };
+    let mut at_faces: FxHashMap<[u32; 3], [f64; 2]> = FxHashMap::default();
+    let all = made.mesh.tets.iter().zip(&made.regions).zip(&made.layers);
+    for ((tet, _), layer) in all.filter(|((_, region), layer)| **region == id && (**layer == 0 || **layer == last)) {
+        for [a, b, c] in [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]] {
+            at_faces.entry(face_key([tet[a], tet[b], tet[c]])).or_default()[usize::from(*layer == 0)] += volume(tet);
+        }
+    }
+    let steps: Vec<f64> =
+        at_faces.values().filter(|both| both.iter().all(|v| *v > 0.0)).map(|[layer, core]| core / layer).collect();
+    steps.iter().sum::<f64>() / steps.len() as f64
+}
+
+#[test]
+fn the_core_grades_from_the_last_layer() {
+    let seeds = [(0.0, 5), (1.75, 6)].map(|(x, id)| Region::new(Point3::new(x, 0.0, 0.0), id));
+    let plc = Plc::from(joined(&[ball(1.0), ball(2.5)])).regions(seeds.to_vec());
+    let made = with_layers().run(&plc).expect("certified");
+    for id in [5, 6] {
+        let step = mean_step(&made, id);
+        assert!(step < 1.4 * THREE.growth, "{id} {step}");
+    }
+    let core = &made.mesh.tets[made.summary.layers.as_ref().expect("a summary").tets..];
+    let quality = anastomesh_mesh::quality::TetQuality::of_tets(&made.mesh, core);
+    assert!(quality.dihedral_min > 5.0, "{}", quality.dihedral_min);
 }

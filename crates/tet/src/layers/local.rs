@@ -25,7 +25,7 @@ pub(super) struct Local<'a> {
     max_tets: Option<usize>,
 }
 
-/// Numbers of tetrahedra and points that earlier regions used up.
+/// Tetrahedra and points that count towards the limits of a run before a region is filled.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Spent {
     pub tets: usize,

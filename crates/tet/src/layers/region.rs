@@ -207,12 +207,27 @@ impl<'a> Wall<'a> {
                 return Err(TetError::Stuck { part: Obstacle::Triangle(part), reason: Stuck::Layer });
             }
             let edges = input::validate(inner, &local.segments, InputKind::Plc)?;
-            let filled = fill(&Request { spare_needles: false, ..local.request(r, inner, &edges) })?;
+            let heights = self.next_heights(inner);
+            let request = local.request(r, inner, &edges);
+            let filled = fill(&Request { spare_needles: false, heights: &heights, ..request })?;
             self.constraints.check((&filled.mesh, &filled.left_out), inner, &self.triangles)?;
             (recovery, optimize, refine) = (filled.recovery, filled.optimize, filled.refine);
             Ok(filled.mesh)
         })?;
         Ok((made, Core { wanted: places.wanted, recovery, optimize, refine }))
+    }
+
+    /// Heights that continue the growth of the layers inside them.
+    fn next_heights(&self, inner: &TriMesh) -> Vec<f64> {
+        let depths = self.layers.depths();
+        let last = 1.0 - depths.iter().rev().nth(1).copied().unwrap_or(0.0);
+        let mut is_wall = vec![false; inner.points.len()];
+        self.triangles.as_flattened().iter().for_each(|&v| is_wall[v as usize] = true);
+        let height = |(v, is_wall): (usize, bool)| {
+            let offset = (inner.points[v] - self.local.surface.points[v]).norm();
+            if is_wall && offset > 0.0 { self.layers.growth * last * offset } else { f64::INFINITY }
+        };
+        is_wall.into_iter().enumerate().map(height).collect()
     }
 
     /// Vertices of the wall, and their thicknesses relative to those asked for.

@@ -19,6 +19,8 @@ use rustc_hash::FxHashMap;
 
 /// Fraction of the thickness asked for below which layers count as thin.
 const THIN: f64 = 0.5;
+/// Tetrahedra of a layer at a triangle.
+const TETS_OF_PRISM: usize = 3;
 
 /// Summary of the layers along a surface, or along both sides of the facets of a complex.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -82,16 +84,17 @@ pub fn layered(r: &Request, layers: &Layers, sides: &LayerSides) -> Result<Layer
         return Err(TetError::LayersAlong(LayersConflict::Region));
     }
     let walls: Vec<Vec<bool>> = shapes.iter().map(|shape| sides.walls(shape)).collect();
-    if !walls.as_slice().concat().contains(&true) {
+    if !walls.iter().flatten().any(|&is_wall| is_wall) {
         return Err(TetError::LayersAlong(LayersConflict::Baffles));
     }
     let mut uses = vec![0_u32; r.surface.points.len()];
     r.surface.triangles.as_flattened().iter().for_each(|&v| uses[v as usize] += 1);
     let mut joint = Joint::new(r.surface);
     for (shape, is_wall) in shapes.iter().zip(&walls) {
-        let spent = Spent { tets: joint.tets(), points: joint.refine.as_ref().map_or(0, |refine| refine.points) };
+        let triangles = is_wall.iter().filter(|is_wall| **is_wall).count();
+        let spent = joint.spent(TETS_OF_PRISM * layers.count as usize * triangles);
         let local = Local::new(r, shape, spent);
-        let made = if is_wall.contains(&true) {
+        let made = if triangles > 0 {
             let markers: Vec<i32> =
                 shape.boundary.iter().filter_map(|s| sides.markers.get(s.triangle as usize).copied()).collect();
             joint.summary.regions += 1;
@@ -139,6 +142,11 @@ impl Joint {
     /// Number of tetrahedra.
     fn tets(&self) -> usize {
         self.in_layers.len() + self.inside.len()
+    }
+
+    /// Tetrahedra and points of the earlier regions, and tetrahedra in the layers of the next one.
+    fn spent(&self, in_layers: usize) -> Spent {
+        Spent { tets: self.tets() + in_layers, points: self.refine.as_ref().map_or(0, |refine| refine.points) }
     }
 
     /// Adds a filled region.

@@ -12,6 +12,8 @@ pub struct Wall<'a> {
     pub kind: InputKind,
     /// Number of last triangles of a closed surface that lie inside and separate nothing.
     pub baffles: usize,
+    /// Height wanted for the first tetrahedra at each vertex; may be empty.
+    pub heights: &'a [f64],
     pub bvh: Bvh,
     /// Edge length at each vertex.
     pub sizes: Vec<f64>,
@@ -23,7 +25,7 @@ impl<'a> Wall<'a> {
     /// Wall whose sizes are the edge lengths of the surface.
     pub fn new(surface: &'a TriMesh, kind: InputKind, clearance: f64) -> Self {
         let boxes = surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
-        Self { surface, kind, baffles: 0, bvh: Bvh::of(boxes), sizes: vertex_sizes(surface), clearance }
+        Self { surface, kind, baffles: 0, heights: &[], bvh: Bvh::of(boxes), sizes: vertex_sizes(surface), clearance }
     }
 
     /// True if a point lies inside, or may do so in a complex of facets.
