@@ -34,6 +34,7 @@ const RARE: [&str; 61] = [
     "layer-growth",
     "layer-thickness",
     "layers",
+    "layers-in",
     "log-format",
     "make-missing",
     "max-displacement",
