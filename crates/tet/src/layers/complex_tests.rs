@@ -299,10 +299,9 @@ fn the_core_grades_from_the_last_layer() {
     let seeds = [(0.0, 5), (1.75, 6)].map(|(x, id)| Region::new(Point3::new(x, 0.0, 0.0), id));
     let plc = Plc::from(joined(&[ball(1.0), ball(2.5)])).regions(seeds.to_vec());
     let made = with_layers().run(&plc).expect("certified");
-    for id in [5, 6] {
-        let step = mean_step(&made, id);
-        assert!(step < 1.4 * THREE.growth, "{id} {step}");
-    }
+    // In the outer region, the edges of the surface are longer than the last layer is thick.
+    let step = mean_step(&made, 5);
+    assert!(step < 1.2 * THREE.growth, "{step}");
     let core = &made.mesh.tets[made.summary.layers.as_ref().expect("a summary").tets..];
     let quality = anastomesh_mesh::quality::TetQuality::of_tets(&made.mesh, core);
     assert!(quality.dihedral_min > 5.0, "{}", quality.dihedral_min);
