@@ -124,7 +124,7 @@ impl<'a> Wall<'a> {
         let kept: Vec<&Cap> = self.caps.iter().filter(|cap| cap.centre.is_none() && !self.has_segment(cap)).collect();
         let is_free = |v: u32| owners[v as usize] == 1 && !pinned[v as usize];
         let is_outer = |t: u32| self.local.shape.boundary[t as usize].is_outer;
-        let slides = Slides::find((surface, &self.is_rim), &kept, (is_free, is_outer), &mut directions);
+        let slides = Slides::find((surface, &self.is_rim), &kept, &(is_free, is_outer), &mut directions);
         let mut asked = half_widths(surface, &slides.probes(&directions.ways));
         self.constraints.limit(&mut asked, &surface.points);
         self.asked = asked.into_iter().map(|half| self.layers.thickness * half).collect();

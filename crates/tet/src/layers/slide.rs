@@ -36,7 +36,7 @@ impl Slides {
     pub(super) fn find(
         (surface, is_rim): (&TriMesh, &[bool]),
         caps: &[&Cap],
-        is_free: (impl Fn(u32) -> bool, impl Fn(u32) -> bool),
+        is_free: &(impl Fn(u32) -> bool, impl Fn(u32) -> bool),
         directions: &mut Directions,
     ) -> Self {
         let mut normals = vec![None; surface.points.len()];
