@@ -340,6 +340,40 @@ fn several_surfaces_are_one_complex_with_regions() {
     assert_says(&fill(&outer, &out, &["--region", "1,1"]), USAGE, &["X,Y,Z"]);
 }
 
+#[test]
+fn layers_lie_on_both_sides_of_facets_or_in_the_regions_chosen() {
+    let folder = folder();
+    let outer = save(&folder, "tissue.stl", &scaled(&cube(), 4.0));
+    let inner = save(&folder, "fluid.off", &scaled(&cube(), 1.0));
+    let out = folder.path().join("out.vtu");
+    let made = |options: &[&str]| {
+        let general = ["-o", out.to_str().expect("text"), "--json", "--layers", "2", "--layer-thickness", "0.3"];
+        let seeds = ["--region", "0.1,0.2,0.1:id=7", "--region", "2.5,2.5,2.5:id=3"];
+        run("tetrahedralize", &[&outer, &inner], &[&general[..], &seeds, options].concat())
+    };
+    for (options, triangles, regions) in [
+        (&[][..], 12 + 2 * 12, 2),
+        (&["--layers-on", "fluid"], 2 * 12, 2),
+        (&["--layers-on", "fluid", "--layers-in", "7"], 12, 1),
+        (&["--layers-in", "7,3", "--layers-on", "tissue"], 12, 1),
+    ] {
+        let output = made(options);
+        assert_code(&output, FINE);
+        let report = &json(&output)["report"];
+        let layers = &report["layers"];
+        assert_eq!(
+            (&layers["tets"], &layers["regions"]),
+            (&(2 * 3 * triangles).into(), &regions.into()),
+            "{options:?}"
+        );
+        let volume = report["regions"][1]["volume"].as_f64().expect("a number");
+        assert!((volume - 1.0).abs() < 1e-12, "{volume}");
+        assert_code(&check(&out), FINE);
+    }
+    assert_says(&made(&["--layers-in", "4"]), USAGE, &["--layers-in", "number 4"]);
+    assert_says(&made(&["--layers-in", "7", "--layers-on", "tissue"]), USAGE, &["none of their facets bounds"]);
+}
+
 /// Cube with a corner at the origin moved by a fourth of its size, scaled.
 fn scaled(cube: &TriMesh, factor: f64) -> TriMesh {
     let shift = if factor > 1.0 { -1.0 } else { 0.0 };
@@ -379,7 +413,8 @@ fn layers_are_made_and_what_cannot_be_is_refused() {
         (&["--layers", "3", "--layer-thickness", "1.5"], &["0.001 to 0.8"]),
         (&["--layers", "29", "--layer-growth", "3"], &["give fewer or thicker layers"]),
         (&["--layers", "3", "--split"], &["the boundary may be split"]),
-        (&["--layers", "3", "--plc"], &["complex"]),
+        (&["--layers", "3", "--layers-in", "2"], &["--layers-in", "number 2"]),
+        (&["--layers-in", "2"], &["--layers"]),
         (&["--layer-growth", "2"], &["--layers"]),
     ] {
         assert_says(

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 61] = [
+const RARE: [&str; 62] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -34,6 +34,7 @@ const RARE: [&str; 61] = [
     "layer-growth",
     "layer-thickness",
     "layers",
+    "layers-in",
     "log-format",
     "make-missing",
     "max-displacement",

@@ -167,6 +167,8 @@ impl SizeUnmet {
 pub struct LayerReport {
     /// Number of tetrahedra in layers.
     pub tets: usize,
+    /// Number of regions with layers.
+    pub regions: usize,
     /// Quality of all other tetrahedra.
     pub inside: TetQuality,
     /// Surface points with less than half the requested layer thickness.
@@ -175,7 +177,7 @@ pub struct LayerReport {
     pub thinnest: Option<(u32, f64)>,
     /// Surface points without layers.
     pub without: Vec<u32>,
-    /// Flat parts without layers that have other triangles than the input, with rings of layers.
+    /// Flat parts without layers that have other triangles than the input, with layers along their rims.
     pub shrunk_caps: usize,
     /// Parts without layers that keep their triangles.
     pub kept_caps: usize,
@@ -189,6 +191,7 @@ impl LayerReport {
     pub fn of(made: &LayerSummary, mesh: &TetMesh, name: impl Fn(u32) -> u32) -> Self {
         Self {
             tets: made.tets,
+            regions: made.regions,
             inside: TetQuality::of_tets(mesh, &mesh.tets[made.tets..]),
             thin: made.thin,
             thinnest: made.thinnest.map(|(v, share)| (name(v), share)),
@@ -199,9 +202,10 @@ impl LayerReport {
     }
 
     fn text(&self) -> String {
-        let Self { tets, inside: q, thin, thinnest, without, shrunk_caps, kept_caps } = self;
+        let Self { tets, regions, inside: q, thin, thinnest, without, shrunk_caps, kept_caps } = self;
+        let within = if *regions > 1 { format!(" in {regions} regions") } else { String::new() };
         let mut out = format!(
-            "layers: {}; radius ratio of all others: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
+            "layers: {}{within}; radius ratio of all others: mean {:.4}, 1st percentile {:.4}, min {:.4}; \
              dihedral angles {:.2}° to {:.2}°\n",
             tetrahedra(*tets),
             q.mean,
@@ -213,7 +217,7 @@ impl LayerReport {
         if shrunk_caps + kept_caps > 0 {
             let _ = writeln!(
                 out,
-                "  layers end in rings on {}, whose other triangles shrank in their plane, and at thickness 0 at {}",
+                "  layers end in rings on {}, whose other triangles changed in their plane, and at thickness 0 at {}",
                 counted(*shrunk_caps, "flat part"),
                 counted(*kept_caps, "other part")
             );
@@ -231,7 +235,7 @@ impl LayerReport {
             let more = if without.len() > Self::NAMED { ", …" } else { "" };
             let _ = writeln!(
                 out,
-                "  no layers at {} without an inward direction: {}{more}",
+                "  no layers at {} without space or an inward direction: {}{more}",
                 counted(without.len(), "point"),
                 named.join(", ")
             );

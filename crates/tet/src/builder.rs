@@ -5,7 +5,7 @@ use super::contacts;
 use super::error::{LayersConflict, TetError};
 use super::fill::fill;
 use super::layer::Layers;
-use super::layers::{LayerSummary, Layered, layered};
+use super::layers::{LayerSides, LayerSummary, Layered, layered};
 use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
@@ -42,6 +42,7 @@ pub struct Tetrahedralizer {
     boundary: Boundary,
     layers: Option<Layers>,
     layers_on: Vec<i32>,
+    layers_in: Vec<i32>,
     optimize: bool,
     effort: Effort,
     strict: bool,
@@ -106,6 +107,7 @@ impl Default for Tetrahedralizer {
             boundary: Boundary::default(),
             layers: None,
             layers_on: Vec::new(),
+            layers_in: Vec::new(),
             optimize: true,
             effort: Effort::Full,
             strict: false,
@@ -161,7 +163,11 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Layers of thin tetrahedra along a closed surface. All other options apply to the region inside the layers.
+    /// Layers of thin tetrahedra along a closed surface, or along the facets of a complex. All other options apply to the
+    /// volume inside the layers.
+    ///
+    /// In a complex, facets between two regions have layers on both sides. [`Tetrahedralizer::layers_in`] limits them to some
+    /// regions. Facets with one region on both sides have none. Layers have thickness zero at these facets, and at segments.
     #[must_use]
     pub fn layers(mut self, layers: impl Into<Option<Layers>>) -> Self {
         self.layers = layers.into();
@@ -172,10 +178,29 @@ impl Tetrahedralizer {
     ///
     /// Flat parts with other markers, such as inlets, shrink towards their centres. A ring of layers takes the rest of their
     /// area. These parts then have more triangles than the input. Layers end with thickness zero
-    /// at parts that are curved or not star-shaped, which stay unchanged.
+    /// at parts that are curved, not star-shaped or shared by two regions, which stay unchanged.
     #[must_use]
     pub fn layers_on(mut self, markers: impl Into<Vec<i32>>) -> Self {
         self.layers_on = markers.into();
+        self
+    }
+
+    /// Limits the layers to regions with these ids, such as the fluid; an empty list stands for all regions. Ids are those of
+    /// [`Region::id`](crate::Region::id).
+    ///
+    /// ```
+    /// use anastomesh_tet::{InputKind, Layers, Plc, Point3, Region, Tetrahedralizer};
+    ///
+    /// let mut plc = Plc::from(anastomesh_mesh::shapes::sphere_surface(2));
+    /// plc.regions = vec![Region::new(Point3::origin(), 7)];
+    /// let made = Tetrahedralizer::new().kind(InputKind::Plc).layers(Layers::default()).layers_in([7]).run(&plc)?;
+    /// let layers = made.summary.layers.ok_or("no layers")?;
+    /// assert_eq!((layers.tets, layers.regions), (3 * 3 * plc.surface.triangles.len(), 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn layers_in(mut self, regions: impl Into<Vec<i32>>) -> Self {
+        self.layers_in = regions.into();
         self
     }
 
@@ -260,13 +285,17 @@ impl Tetrahedralizer {
             edges: &edges,
             segments: plc.segments,
             kind: self.kind,
+            baffles: 0,
             holes: if self.kind == InputKind::Plc { plc.holes } else { &[] },
             regions: plc.regions,
+            region: None,
             interior: &self.interior,
             refinement: self.refinement.as_ref(),
             sizing: &self.sizing,
+            heights: &[],
             optimize: self.optimize,
             certify: true,
+            spare_needles: true,
             effort: self.effort,
             strict: self.strict,
             max_tets: Some(self.max_tets),
@@ -275,8 +304,8 @@ impl Tetrahedralizer {
         };
         let (filled, layers, of_tets, outer) = match &self.layers {
             Some(layers) => {
-                let Layered { filled, summary, of_tets, outer } =
-                    layered(&request, layers, (plc.markers, &self.layers_on))?;
+                let sides = LayerSides { markers: plc.markers, on: &self.layers_on, within: &self.layers_in };
+                let Layered { filled, summary, of_tets, outer } = layered(&request, layers, &sides)?;
                 (filled, Some(summary), of_tets, outer)
             }
             None => (fill(&request)?, None, Vec::new(), None),
@@ -322,8 +351,6 @@ impl Tetrahedralizer {
         let along = |what| Err(TetError::LayersAlong(what));
         match () {
             () if self.boundary == Boundary::Split => along(LayersConflict::SplitBoundary),
-            () if self.kind == InputKind::Plc => along(LayersConflict::Facets),
-            () if !plc.segments.is_empty() => along(LayersConflict::Segments),
             () if self.layers_on.iter().any(|marker| !plc.markers.contains(marker)) => along(LayersConflict::Marker),
             () => Ok(()),
         }
@@ -413,13 +440,17 @@ pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> R
         edges: &edges,
         segments: &[],
         kind: InputKind::Closed,
+        baffles: 0,
         holes: &[],
         regions: &[],
+        region: None,
         interior: &by.interior,
         refinement: None,
         sizing: &Sizing::Surface,
+        heights: &[],
         optimize: by.optimize,
         certify: false,
+        spare_needles: false,
         effort: by.effort,
         strict: true,
         max_tets: None,

@@ -1,12 +1,13 @@
 //! Carving: removal of the tetrahedra outside the recovered surface.
 
-use super::complex::{Complex, NONE};
+use super::complex::{Complex, NONE, face_key};
 use super::error::{SeedKind, TetError};
 use super::plc::InputKind;
 use super::regions::tets_of_seeds;
 use super::star::Star;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
+use rustc_hash::FxHashSet;
 
 const UNSEEN: u8 = 2;
 const OUTSIDE: u8 = 0;
@@ -23,10 +24,18 @@ impl Sides {
     /// [`TetError::NothingEnclosed`] and [`TetError::BadSeed`] for other complexes.
     pub(super) fn find(c: &Complex, surface: &TriMesh, kind: InputKind, holes: &[Point3]) -> Result<Self, TetError> {
         match kind {
-            InputKind::Closed => sides_by_parity(c, surface),
+            InputKind::Closed => sides_by_parity(c, surface, 0),
             InputKind::Plc => sides_by_reach(c, holes),
         }
         .map(Self)
+    }
+
+    /// Finds the sides for a closed surface whose last triangles, `baffles` in number, separate nothing.
+    ///
+    /// # Errors
+    /// [`TetError::NotSeparating`] if another triangle has the same side on both sides.
+    pub(super) fn find_around(c: &Complex, surface: &TriMesh, baffles: usize) -> Result<Self, TetError> {
+        sides_by_parity(c, surface, baffles).map(Self)
     }
 
     /// True if a tetrahedron is kept.
@@ -77,7 +86,10 @@ fn infinity(c: &Complex) -> Option<u32> {
 
 /// Parity of the frozen faces between each tetrahedron and infinity. Crossing one changes sides, so shells may be
 /// nested and have any orientation.
-fn sides_by_parity(c: &Complex, surface: &TriMesh) -> Result<Vec<u8>, TetError> {
+fn sides_by_parity(c: &Complex, surface: &TriMesh, baffles: usize) -> Result<Vec<u8>, TetError> {
+    let boundary = surface.triangles.len().saturating_sub(baffles);
+    let inside: FxHashSet<[u32; 3]> = surface.triangles[boundary..].iter().map(|&t| face_key(t)).collect();
+    let separates = |half: u32| c.is_frozen(half) && !inside.contains(&face_key(c.face(half)));
     let mut side = vec![UNSEEN; c.slots()];
     let mut stack = Vec::new();
     if let Some(ghost) = infinity(c) {
@@ -89,14 +101,14 @@ fn sides_by_parity(c: &Complex, surface: &TriMesh) -> Result<Vec<u8>, TetError> 
             let half = 4 * t + i;
             let n = c.mate(half) >> 2;
             if side[n as usize] == UNSEEN {
-                side[n as usize] = side[t as usize] ^ u8::from(c.is_frozen(half));
+                side[n as usize] = side[t as usize] ^ u8::from(separates(half));
                 stack.push(n);
             }
         }
     }
     let halves = c.real_tets().flat_map(|t| (0..4).map(move |i| 4 * t + i));
     let mut lost = halves
-        .filter(|&h| (side[(h >> 2) as usize] == side[(c.mate(h) >> 2) as usize]) == c.is_frozen(h))
+        .filter(|&h| (side[(h >> 2) as usize] == side[(c.mate(h) >> 2) as usize]) == separates(h))
         .map(|h| triangle_at(c, surface, h));
     match lost.next() {
         Some(triangle) => Err(TetError::NotSeparating { triangle }),

@@ -136,21 +136,21 @@ impl std::fmt::Display for SeedKind {
 pub enum LayersConflict {
     /// The boundary may be split.
     SplitBoundary,
-    /// The input is a complex of facets.
-    Facets,
-    /// The input has segments.
-    Segments,
     /// A marker of the layers is unknown.
     Marker,
+    /// A region of the layers is unknown.
+    Region,
+    /// All facets chosen have one region on both sides, or belong to none of the regions chosen.
+    Baffles,
 }
 
 impl std::fmt::Display for LayersConflict {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(match self {
             Self::SplitBoundary => "the boundary may be split",
-            Self::Facets => "the input is a complex of facets",
-            Self::Segments => "the input has segments",
             Self::Marker => "no triangle of the input has one of their markers",
+            Self::Region => "no region of the input has one of their numbers",
+            Self::Baffles => "none of their facets bounds one of their regions",
         })
     }
 }
@@ -352,8 +352,8 @@ pub enum TetError {
     /// The parameters of layers are invalid.
     #[error(transparent)]
     Layers(#[from] LayersError),
-    /// Layers need a closed surface with a fixed boundary.
-    #[error("layers need a closed surface with a fixed boundary: {0}")]
+    /// Layers need facets that bound a region and a fixed boundary.
+    #[error("layers need facets that bound a region and stay unchanged: {0}")]
     LayersAlong(LayersConflict),
     /// The surface intersects itself: pairs of triangles intersect outside shared vertices and edges.
     #[error(

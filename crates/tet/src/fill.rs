@@ -33,7 +33,8 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
     let optimize = if r.optimize { Some(improve(r, &mut carved)?) } else { None };
     carve::release_segments(&mut carved, &held);
     r.watch.report(Stage::Certify, 0, 1)?;
-    let Labels { regions, region_count, ignored_seeds } = if r.label { labels(r, &carved)? } else { Labels::default() };
+    let Labels { regions, region_count, ignored_seeds, seeds } =
+        if r.label { labels(r, &carved)? } else { Labels::default() };
     let mesh = carved.into_compact_mesh(r.surface.points.len());
     r.watch.ask()?;
     let mut places = Vec::new();
@@ -44,13 +45,16 @@ pub(super) fn fill(r: &Request) -> Result<Filled, TetError> {
         certify_left_out(&mesh, r.surface, r.segments, &left_out)?;
     }
     r.watch.report(Stage::Certify, 1, 1)?;
-    Ok(Filled { mesh, places, left_out, regions, region_count, ignored_seeds, recovery, optimize, refine })
+    Ok(Filled { mesh, places, left_out, regions, region_count, ignored_seeds, seeds, recovery, optimize, refine })
 }
 
 /// Carves a complex. Returns the filled part, the parts of the input outside, and the number of Steiner points. These are the
 /// last points of the part; in `complex` their indices are at least `given`.
 fn carved(r: &Request, complex: &Complex, given: usize) -> Result<(Complex, LeftOut, usize), TetError> {
-    let sides = Sides::find(complex, r.surface, r.kind, r.holes)?;
+    let sides = match r.baffles {
+        0 => Sides::find(complex, r.surface, r.kind, r.holes)?,
+        baffles => Sides::find_around(complex, r.surface, baffles)?,
+    };
     r.watch.ask()?;
     let left_out = LeftOut::find(complex, &sides, r.surface, r.segments)?;
     match left_out.as_error() {
@@ -74,12 +78,15 @@ struct Labels {
     region_count: usize,
     /// Seeds in regions with an earlier one, each with that one.
     ignored_seeds: Vec<[u32; 2]>,
+    /// Seed of each region.
+    seeds: Vec<Option<u32>>,
 }
 
 fn labels(r: &Request, carved: &Complex) -> Result<Labels, TetError> {
     let found = Regions::of(carved, r.regions)?;
     let regions = if found.matter() { found.ids(carved) } else { Vec::new() };
-    Ok(Labels { regions, region_count: found.len(), ignored_seeds: found.into_ignored() })
+    let seeds = found.seeds().collect();
+    Ok(Labels { regions, region_count: found.len(), ignored_seeds: found.into_ignored(), seeds })
 }
 
 /// Improves the mesh; triangles and held segments stay.
@@ -88,8 +95,7 @@ fn improve(r: &Request, carved: &mut Complex) -> Result<OptimizeReport, TetError
     // The improvement limits itself by attempts per tetrahedron.
     r.watch.spend(OPTIMIZATION * carved.slots())?;
     let fixed_points = r.surface.points.len();
-    // Callers without a certificate improve their meshes further.
-    let options = OptimizeOptions { fixed_points, spare_needles: r.certify, ..OptimizeOptions::of(r.effort) };
+    let options = OptimizeOptions { fixed_points, spare_needles: r.spare_needles, ..OptimizeOptions::of(r.effort) };
     let report = optimize_complex(carved, &options, r.watch);
     r.watch.report(Stage::Optimize, 1, 1)?;
     Ok(report)

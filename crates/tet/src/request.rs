@@ -18,14 +18,23 @@ pub(super) struct Request<'a> {
     pub edges: &'a SurfaceEdges,
     pub segments: &'a [[u32; 2]],
     pub kind: InputKind,
+    /// Number of last triangles of a closed surface that lie inside and separate nothing.
+    pub baffles: usize,
     pub holes: &'a [Point3],
     pub regions: &'a [Region],
+    /// Region that the whole volume belongs to. Its seed is not located.
+    pub region: Option<&'a Region>,
     pub interior: &'a Interior,
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
+    /// Height wanted for the first tetrahedra at each point of the surface, where it is more than that of a regular
+    /// tetrahedron at its edges. Empty without layers.
+    pub heights: &'a [f64],
     pub optimize: bool,
     /// True if the mesh is to be certified against the surface.
     pub certify: bool,
+    /// True if the improvement spends less on tetrahedra beside needles of the surface.
+    pub spare_needles: bool,
     pub effort: Effort,
     /// True if triangles and segments outside are an error.
     pub strict: bool,
@@ -48,6 +57,8 @@ pub(super) struct Filled {
     pub region_count: usize,
     /// Region seeds in regions with an earlier one, each with that one.
     pub ignored_seeds: Vec<[u32; 2]>,
+    /// Seed of each region, in the order of their first tetrahedra; empty if not labelled.
+    pub seeds: Vec<Option<u32>>,
     pub recovery: RecoverySummary,
     pub optimize: Option<OptimizeReport>,
     pub refine: Option<RefineReport>,

@@ -34,6 +34,9 @@ const SCAFFOLD_MARGIN: f64 = 0.1;
 /// Maximum points of the scaffold inside, per point of the surface.
 const SCAFFOLD_POINTS: f64 = 20.0;
 
+/// Height of the regular tetrahedron, in edge lengths.
+const REGULAR_HEIGHT: f64 = 0.816;
+
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
 
@@ -94,7 +97,10 @@ fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
 /// Size field of a surface. `longest` bounds all edge lengths.
 fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeOptions) -> Option<SizeTree> {
     let function;
+    let first: Vec<f64> =
+        wall.heights.iter().zip(&wall.sizes).map(|(height, size)| size.max(height / REGULAR_HEIGHT)).collect();
     let mut limits: Vec<SizeLimit> = longest.map(SizeLimit::Constant).into_iter().collect();
+    limits.extend((!first.is_empty()).then_some(SizeLimit::PerVertex(&first)));
     match sizing {
         Sizing::Surface => {}
         Sizing::Constant(size) => limits.push(SizeLimit::Constant(*size)),
@@ -110,11 +116,16 @@ fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeO
 /// Wall of a run, with sizes as its interior asks.
 fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
     let growing = matches!(r.interior, Interior::Growing { .. });
-    let mut wall = Wall::new(r.surface, r.kind, if growing { GROWING_CLEARANCE } else { CLEARANCE });
+    let mut wall = wall_of(r, if growing { GROWING_CLEARANCE } else { CLEARANCE });
     if growing {
         limit_by_gaps(&mut wall);
     }
     wall
+}
+
+/// Wall of a run, with the edge lengths of the surface.
+fn wall_of<'a>(r: &Request<'a>, clearance: f64) -> Wall<'a> {
+    Wall { baffles: r.baffles, heights: r.heights, ..Wall::new(r.surface, r.kind, clearance) }
 }
 
 /// Interior points of a run on a graded lattice; `None` if interior and sizing ask for others.
@@ -148,7 +159,7 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
 /// # Errors
 /// [`TetError::Cancelled`].
 pub(super) fn scaffold_points(r: &Request, others: &[Point3]) -> Result<Vec<Point3>, TetError> {
-    let mut wall = Wall::new(r.surface, r.kind, GROWING_CLEARANCE);
+    let mut wall = wall_of(r, GROWING_CLEARANCE);
     limit_by_gaps(&mut wall);
     let options = TreeOptions::growing(Interior::GROWTH);
     let Some(tree) = size_tree(&wall, &Sizing::Surface, None, &options) else { return Ok(Vec::new()) };
@@ -172,7 +183,7 @@ pub(super) fn scaffold_points(r: &Request, others: &[Point3]) -> Result<Vec<Poin
 /// [`TetError::TooMany`].
 pub(super) fn check_uniform(r: &Request, side: f64) -> Result<(), TetError> {
     let Some(limit) = r.max_tets else { return Ok(()) };
-    within(estimate_uniform(side, &Wall::new(r.surface, r.kind, CLEARANCE)), limit)
+    within(estimate_uniform(side, &wall_of(r, CLEARANCE)), limit)
 }
 
 fn within(estimate: f64, limit: usize) -> Result<(), TetError> {
@@ -191,14 +202,14 @@ fn rounded(estimate: f64) -> usize {
 /// A seed outside; [`TetError::TooMany`]; [`TetError::Cancelled`].
 pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineReport>, TetError> {
     let sized = !matches!(r.sizing, Sizing::Surface);
-    let bounded = r.regions.iter().any(Region::is_bounded);
+    let bounded = r.regions.iter().chain(r.region).any(Region::is_bounded);
     let asked_for = r.refinement.is_some() || sized || bounded;
     let growing = matches!(r.interior, Interior::Growing { .. });
     if !asked_for && !growing {
         return Ok(None);
     }
     r.watch.report(Stage::Refine, 0, 0)?;
-    let wall = (sized || r.regions.iter().any(|region| region.growth.is_some())).then(|| wall(r));
+    let wall = (sized || r.regions.iter().chain(r.region).any(|region| region.growth.is_some())).then(|| wall(r));
     let tree = wall.as_ref().filter(|_| sized);
     let tree = tree.and_then(|w| size_tree(w, r.sizing, None, &tree_options(r.interior, r.sizing)));
     let size = tree.map(|tree| move |p: &Point3| tree.size_at(p));
@@ -208,7 +219,10 @@ pub(super) fn refine(r: &Request, carved: &mut Complex) -> Result<Option<RefineR
     }
     goals.size = size.as_ref().map(|f| f as &dyn Fn(&Point3) -> f64);
     let (mut region_goals, mut of) = (Vec::new(), Vec::new());
-    if bounded {
+    if r.region.is_some() {
+        region_goals = vec![region_goal(r, wall.as_ref(), r.region)];
+        of = vec![0; carved.slots()];
+    } else if bounded {
         let found = Regions::of(carved, r.regions)?;
         let region = |seed: Option<u32>| seed.map(|s| &r.regions[s as usize]);
         region_goals = found.seeds().map(|seed| region_goal(r, wall.as_ref(), region(seed))).collect();

@@ -24,3 +24,7 @@ class PartialLayerOptions(TypedDict, total=False):
         Sequence[int | str] | None,
         Option("Markers or names of the parts with layers; they end in rings on flat parts without. All parts if absent", join=","),
     ]
+    layers_in: Annotated[
+        Sequence[int] | None,
+        Option("Numbers of the regions with layers; facets between two have them on both sides. All regions if absent", join=","),
+    ]

@@ -102,6 +102,17 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub layers_on: Vec<String>,
+    /// Numbers of the regions that get layers, comma-separated, such as the fluid (default: all, so that facets between regions
+    /// have layers on both sides)
+    #[arg(
+        long,
+        value_name = "REGIONS",
+        value_delimiter = ',',
+        requires = "layers",
+        help_heading = "Layers",
+        allow_hyphen_values = true
+    )]
+    pub layers_in: Vec<i32>,
     #[command(flatten)]
     pub report: ReportArgs,
     #[command(flatten)]

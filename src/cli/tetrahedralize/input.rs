@@ -133,7 +133,7 @@ impl Input {
         said(&report)
     }
 
-    /// Gives regions their sizes and growths.
+    /// Gives regions their sizes and growths, and checks that those with layers exist.
     pub fn limit_regions(&mut self, plan: &TetPlan) -> Result<(), Failure> {
         let missing =
             |flag: &str, id: i32| Failure::usage(format!("{flag}: no region of the input has the number {id}"));
@@ -142,6 +142,11 @@ impl Input {
         }
         for &(id, growth) in &plan.region_growths {
             self.regions_of(id).ok_or_else(|| missing("--region-growth", id))?.for_each(|r| r.growth = Some(growth));
+        }
+        for &id in &plan.layers_in {
+            if self.regions_of(id).is_none() {
+                return Err(missing("--layers-in", id));
+            }
         }
         Ok(())
     }

@@ -41,6 +41,9 @@ pub struct TetPlan {
     /// Parts with layers; empty for all.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub layers_on: Vec<String>,
+    /// Numbers of the regions with layers; empty for all.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub layers_in: Vec<i32>,
     /// True if tetrahedra are improved.
     pub optimize: bool,
     /// True if the improvement is quick.
@@ -105,6 +108,7 @@ impl TetPlan {
         plan.strict = args.strict;
         plan.plc |= !args.others.is_empty();
         plan.layers_on.clone_from(&args.layers_on);
+        plan.layers_in.clone_from(&args.layers_in);
         if !plan.plc && !args.hole.is_empty() {
             return Err(Failure::usage("--hole is for facet complexes: give --plc"));
         }
@@ -131,6 +135,7 @@ impl TetPlan {
             split: args.split,
             layers: None,
             layers_on: Vec::new(),
+            layers_in: Vec::new(),
             optimize: refine,
             quick: false,
             repair: false,
@@ -161,6 +166,7 @@ impl TetPlan {
             split: !s.keep_boundary,
             layers: None,
             layers_on: Vec::new(),
+            layers_in: Vec::new(),
             optimize: refine && !s.no_optimization,
             // As fast as TetGen, unless angles are bounded.
             quick: !s.quality.is_some_and(bounds_angles),
@@ -204,6 +210,7 @@ impl TetPlan {
             .sizing(self.size.filter(|_| sized).map_or(Sizing::Surface, Sizing::Constant))
             .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
             .layers(self.layers)
+            .layers_in(self.layers_in.as_slice())
             .optimize(self.optimize)
             .effort(if self.quick { Effort::Quick } else { Effort::Full })
             .max_tets(self.max_tets)

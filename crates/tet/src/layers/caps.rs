@@ -10,7 +10,7 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use rustc_hash::FxHashMap;
 
 /// Maximum distance of a cap's vertices from its plane, relative to its size. Coordinates rounded to 32 bits fit.
-const FLAT: f64 = 1e-5;
+pub(super) const FLAT: f64 = 1e-5;
 
 /// Connected triangles without layers that have one marker.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,8 +23,9 @@ pub(super) struct Cap {
     pub centre: Option<Point3>,
 }
 
-/// Finds the caps of a closed surface: all triangles off the wall.
-pub(super) fn caps(surface: &TriMesh, is_wall: &[bool], markers: &[i32]) -> Vec<Cap> {
+/// Finds the caps of a closed surface: all triangles off the wall. Triangles after the end of `is_wall` are no part of the
+/// surface.
+pub(super) fn caps<K: PartialEq>(surface: &TriMesh, is_wall: &[bool], markers: &[K]) -> Vec<Cap> {
     let mut caps = components(surface, is_wall, markers);
     let mut owners = vec![0_u32; surface.points.len()];
     caps.iter().flat_map(|cap| &cap.vertices).for_each(|&v| owners[v as usize] += 1);
@@ -36,9 +37,9 @@ pub(super) fn caps(surface: &TriMesh, is_wall: &[bool], markers: &[i32]) -> Vec<
     caps
 }
 
-fn components(surface: &TriMesh, is_wall: &[bool], markers: &[i32]) -> Vec<Cap> {
+fn components<K: PartialEq>(surface: &TriMesh, is_wall: &[bool], markers: &[K]) -> Vec<Cap> {
     let triangles = &surface.triangles;
-    let off_wall = || (0..triangles.len() as u32).filter(|&t| !is_wall[t as usize]);
+    let off_wall = || (0..is_wall.len() as u32).filter(|&t| !is_wall[t as usize]);
     let mut beside: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
     for t in off_wall() {
         sides(triangles[t as usize]).for_each(|[a, b]| beside.entry([a.min(b), a.max(b)]).or_default().push(t));
@@ -97,7 +98,7 @@ fn centre(surface: &TriMesh, cap: &Cap) -> Option<Point3> {
 }
 
 /// Edges of a cap that only one of its triangles has, in the direction of that triangle.
-fn rim(triangles: &[[u32; 3]], cap: &Cap) -> Vec<[u32; 2]> {
+pub(super) fn rim(triangles: &[[u32; 3]], cap: &Cap) -> Vec<[u32; 2]> {
     let mut all: Vec<[u32; 2]> = cap.triangles.iter().flat_map(|&t| sides(triangles[t as usize])).collect();
     all.sort_unstable();
     all.iter().filter(|[a, b]| all.binary_search(&[*b, *a]).is_err()).copied().collect()
@@ -135,7 +136,7 @@ mod tests {
     #[test]
     fn flat_ends_shrink_and_others_stay() {
         let (mut surface, wall) = bar();
-        let found = caps(&surface, &wall, &[]);
+        let found = caps::<i32>(&surface, &wall, &[]);
         assert_eq!(found.iter().map(|cap| cap.triangles.len()).collect::<Vec<_>>(), [2, 4]);
         let centres: Vec<Point3> = found.iter().filter_map(|cap| cap.centre).collect();
         assert!((centres[1] - Point3::new(2.0, 0.5, 0.5)).norm() < 1e-12, "{centres:?}");
@@ -143,7 +144,7 @@ mod tests {
         assert!((places[1].expect("on a cap") - Point3::new(2.0, 0.25, 0.25)).norm() < 1e-12, "{places:?}");
         // Not flat.
         surface.points[8].x = 2.2;
-        let found = caps(&surface, &wall, &[]);
+        let found = caps::<i32>(&surface, &wall, &[]);
         assert_eq!(found.iter().map(|cap| cap.centre.is_some()).collect::<Vec<_>>(), [true, false]);
         assert_eq!(shrunk(&surface, &found, 0.5)[1], Some(surface.points[1]));
         // Each end has two markers.
@@ -155,7 +156,7 @@ mod tests {
     #[test]
     fn a_closed_part_has_no_rim() {
         let sphere = sphere_surface(1);
-        let found = caps(&sphere, &vec![false; sphere.triangles.len()], &[]);
+        let found = caps(&sphere, &vec![false; sphere.triangles.len()], &[] as &[i32]);
         assert_eq!((found.len(), found[0].centre), (1, None));
     }
 }

@@ -6,13 +6,24 @@
 //! mesh fills an embedded surface. So the whole fills the outer surface: a map without inversions that is one to one on
 //! the boundary is one to one inside.
 //!
+//! In a complex, each region is a closed surface of its own (`regions`, `local`), and is filled with layers or without
+//! (`region`). All keep the triangles given, so that the regions fit together (`whole`). Triangles, segments and points inside
+//! a region stay inside its layers (`constraints`).
+//!
 //! The offset depends on the thickness asked for and on the clearance (`room`). If a prism is inverted or the inner
 //! surface intersects itself, positions move back towards the wall (`inset`). At offset zero there is no layer.
 
 mod caps;
+#[cfg(test)]
+mod complex_tests;
+mod constraints;
 mod direction;
 mod half_width;
 mod inset;
+mod local;
+mod region;
+mod regions;
+mod slide;
 mod stack;
 #[cfg(test)]
 mod tests;
@@ -23,4 +34,4 @@ pub use half_width::clear_widths;
 pub use inset::{Inset, Places, Ways, inset, lower};
 pub use stack::{Numbers, Stack, rims, toward};
 pub use whole::LayerSummary;
-pub(super) use whole::{Layered, layered};
+pub(super) use whole::{LayerSides, Layered, layered};

@@ -1,10 +1,10 @@
 use crate::layer::Layers;
-use crate::{Boundary, InputKind, Plc, TetError, Tetrahedralization, Tetrahedralizer};
+use crate::{Boundary, LayersConflict, Plc, TetError, Tetrahedralization, Tetrahedralizer};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::shapes::sphere_surface;
 
-const THREE: Layers = Layers { count: 3, growth: 1.5, thickness: 0.3 };
+pub(super) const THREE: Layers = Layers { count: 3, growth: 1.5, thickness: 0.3 };
 
 fn layered(surface: &TriMesh, layers: Layers) -> Tetrahedralization {
     let made = Tetrahedralizer::new().layers(Some(layers)).run(&Plc::from(surface)).expect("certified");
@@ -13,14 +13,14 @@ fn layered(surface: &TriMesh, layers: Layers) -> Tetrahedralization {
 }
 
 /// A box with one corner at `from` and outward faces.
-fn cuboid(from: Point3, size: Vec3) -> TriMesh {
+pub(super) fn cuboid(from: Point3, size: Vec3) -> TriMesh {
     let corner = |i: usize| from + Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64).component_mul(&size);
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     TriMesh { points: (0..8).map(corner).collect(), triangles }
 }
 
-fn joined(parts: &[TriMesh]) -> TriMesh {
+pub(super) fn joined(parts: &[TriMesh]) -> TriMesh {
     let mut all = TriMesh::default();
     for part in parts {
         let first = all.points.len() as u32;
@@ -63,16 +63,9 @@ fn what_cannot_be_is_refused_with_the_limits() {
 }
 
 #[test]
-fn layers_are_for_closed_surfaces_that_stay() {
-    let plc = Plc::from(sphere_surface(1));
-    let layers = || Tetrahedralizer::new().layers(Some(THREE));
-    let dangling = plc.clone().segments(vec![[0, 1]]);
-    let refused = [
-        layers().kind(InputKind::Plc).run(&plc),
-        layers().boundary(Boundary::Split).run(&plc),
-        layers().run(&dangling),
-    ];
-    assert!(refused.iter().all(|made| matches!(made, Err(TetError::LayersAlong(_)))), "{refused:?}");
+fn layers_need_a_boundary_that_stays() {
+    let made = Tetrahedralizer::new().layers(Some(THREE)).boundary(Boundary::Split).run(&Plc::from(sphere_surface(1)));
+    assert!(matches!(made, Err(TetError::LayersAlong(LayersConflict::SplitBoundary))), "{made:?}");
 }
 
 #[test]
@@ -132,9 +125,8 @@ fn lumps_apart_are_regions_still() {
     }
 }
 
-#[test]
-fn a_vertex_from_which_nothing_leads_in_has_no_layer_and_is_named() {
-    // Two pyramids with a common apex: the inside lies on two sides of it.
+/// Two pyramids with a common apex, point 0.
+fn pyramids() -> TriMesh {
     let square = |z: f64| [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point3::new(x, y, z));
     let mut surface = TriMesh { points: vec![Point3::origin()], triangles: Vec::new() };
     surface.points.extend(square(1.0).into_iter().chain(square(-1.0)));
@@ -143,8 +135,21 @@ fn a_vertex_from_which_nothing_leads_in_has_no_layer_and_is_named() {
         surface.triangles.extend([[0, b, a], [0, a + 4, b + 4]]);
     }
     surface.triangles.extend([[1, 2, 3], [1, 3, 4], [5, 7, 6], [5, 8, 7]]);
-    let made = layered(&surface, THREE);
-    assert_eq!(made.summary.layers.expect("a summary").without, [0]);
+    surface
+}
+
+#[test]
+fn regions_with_a_common_vertex_have_layers_there() {
+    let made = layered(&pyramids(), THREE);
+    let summary = made.summary.layers.expect("a summary");
+    assert_eq!((summary.tets, summary.regions, summary.without), (9 * 12, 2, Vec::new()));
+}
+
+#[test]
+fn a_vertex_from_which_nothing_leads_in_has_no_layer_and_is_named() {
+    // Around the pyramids, each direction from the apex leads into one of them or runs along it.
+    let around = joined(&[pyramids(), cuboid(Point3::new(-3.0, -3.0, -3.0), Vec3::new(6.0, 6.0, 6.0))]);
+    assert_eq!(layered(&around, THREE).summary.layers.expect("a summary").without, [0]);
 }
 
 #[test]
@@ -161,7 +166,7 @@ fn bounds_are_for_what_is_inside_of_the_layers() {
 }
 
 /// Tube along z with walls (marker 1) and flat ends (markers 2 and 3), each with a vertex in the middle.
-fn capped_tube() -> Plc {
+pub(super) fn capped_tube() -> Plc {
     let (around, rings) = (16_u32, 7_u32);
     let on_ring = |ring: u32, i: u32| {
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(around);

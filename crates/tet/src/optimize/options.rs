@@ -89,3 +89,17 @@ pub struct OptimizeReport {
     /// True if the attempt limit was reached, so that more improvement may be possible.
     pub budget_spent: bool,
 }
+
+impl OptimizeReport {
+    /// Adds the counts of another part.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.moved += other.moved;
+        self.flips += other.flips;
+        self.inserted += other.inserted;
+        self.contracted += other.contracted;
+        self.worst_before = self.worst_before.min(other.worst_before);
+        self.worst_after = self.worst_after.min(other.worst_after);
+        self.flat_left += other.flat_left;
+        self.budget_spent |= other.budget_spent;
+    }
+}

@@ -80,6 +80,15 @@ pub struct RecoverySummary {
     pub steiner_points: usize,
 }
 
+impl RecoverySummary {
+    /// Adds the counts of another part.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.missing_edges += other.missing_edges;
+        self.missing_triangles += other.missing_triangles;
+        self.steiner_points += other.steiner_points;
+    }
+}
+
 /// Recovers the whole surface in `c`, whose first vertices are the surface's points, and freezes its faces. Flips make
 /// only tetrahedra that `rule` allows.
 pub(super) fn recover(

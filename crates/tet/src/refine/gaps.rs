@@ -16,11 +16,11 @@ const MARGIN: f64 = 1e-9;
 
 /// Limits the edge lengths at the vertices of a wall to a share of the distance to the opposite wall.
 pub fn limit_by_gaps(wall: &mut Wall) {
-    let Wall { surface, kind, bvh, sizes, .. } = wall;
+    let Wall { surface, kind, baffles, bvh, sizes, .. } = wall;
     for ((v, normal), h) in (0..).zip(normals(surface)).zip(sizes) {
         let Some(normal) = normal.try_normalize(0.0).filter(|_| *h > 0.0) else { continue };
         let both = [-normal, normal];
-        let directions = if *kind == InputKind::Closed { &both[..1] } else { &both };
+        let directions = if *kind == InputKind::Closed && *baffles == 0 { &both[..1] } else { &both };
         let reach = ACROSS * *h;
         let gap = directions.iter().map(|d| gap(surface, bvh, v, d * reach)).fold(1.0, f64::min);
         *h *= gap.max(LEAST);

@@ -35,6 +35,15 @@ pub struct RefineReport {
     pub limit_reached: bool,
 }
 
+impl RefineReport {
+    /// Adds the counts of another part.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.points += other.points;
+        self.left += other.left;
+        self.limit_reached |= other.limit_reached;
+    }
+}
+
 /// A tetrahedron to split, ordered by its violation.
 #[derive(Clone, Copy, Debug)]
 struct Task {

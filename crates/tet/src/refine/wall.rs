@@ -10,6 +10,10 @@ use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle};
 pub struct Wall<'a> {
     pub surface: &'a TriMesh,
     pub kind: InputKind,
+    /// Number of last triangles of a closed surface that lie inside and separate nothing.
+    pub baffles: usize,
+    /// Height wanted for the first tetrahedra at each vertex; may be empty.
+    pub heights: &'a [f64],
     pub bvh: Bvh,
     /// Edge length at each vertex.
     pub sizes: Vec<f64>,
@@ -21,7 +25,7 @@ impl<'a> Wall<'a> {
     /// Wall whose sizes are the edge lengths of the surface.
     pub fn new(surface: &'a TriMesh, kind: InputKind, clearance: f64) -> Self {
         let boxes = surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
-        Self { surface, kind, bvh: Bvh::of(boxes), sizes: vertex_sizes(surface), clearance }
+        Self { surface, kind, baffles: 0, heights: &[], bvh: Bvh::of(boxes), sizes: vertex_sizes(surface), clearance }
     }
 
     /// True if a point lies inside, or may do so in a complex of facets.
@@ -58,7 +62,11 @@ impl<'a> Wall<'a> {
         let mut top = *p;
         top.z = f64::INFINITY;
         let mut odd = false;
+        let boundary = self.surface.triangles.len().saturating_sub(self.baffles);
         self.bvh.query(&Aabb { min: *p, max: top }, |t| {
+            if t as usize >= boundary {
+                return;
+            }
             let [a, b, c] = self.surface.triangles[t as usize].map(|v| self.surface.points[v as usize] - p);
             let side = |u: &Vec3, v: &Vec3| u.x * v.y - u.y * v.x;
             let (w, u, v) = (side(&a, &b), side(&b, &c), side(&c, &a));
