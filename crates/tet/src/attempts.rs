@@ -13,8 +13,9 @@ use super::sized;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 
-/// Operations of a strategy in the first round: per missing edge or triangle, plus a constant.
-const OPERATIONS: (u64, u64) = (2_500, 2_500_000);
+/// Operations of a strategy in the first round: per missing edge or triangle, and per triangle of the surface. Together the
+/// strategies of a start then take about as long as its flips.
+const OPERATIONS: (u64, u64) = (2_500, 300);
 
 /// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 2;
@@ -24,7 +25,7 @@ const PLANE_SHARE: u64 = 2;
 const MANY: usize = 1_000;
 
 /// Maximum rounds over all strategies.
-const MAX_ROUNDS: u32 = 6;
+const MAX_ROUNDS: u32 = 7;
 
 /// Growth of the operations from round to round.
 const GROWTH: u64 = 4;
@@ -320,7 +321,8 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let budget = Budget::new(share * (OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1));
+            let first = OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1 * r.surface.triangles.len() as u64;
+            let budget = Budget::new(share * first);
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
             effort.left = effort.left.saturating_sub(budget.spent());
