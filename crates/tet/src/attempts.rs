@@ -13,16 +13,18 @@ use super::sized;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 
-/// Operations of a strategy in the first round: per missing edge or triangle, and per triangle of the surface. Together the
-/// strategies of a start then take about as long as its flips.
+/// Operations of a strategy in the first round: per missing edge or triangle, and per triangle of the surface.
 const OPERATIONS: (u64, u64) = (2_500, 300);
+
+/// Maximum operations in the first round that are not due to missing parts. More are wasted where few parts are left.
+const MAX_CONSTANT: u64 = 2_500_000;
 
 /// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 2;
 
-/// Missing edges and triangles from which a surface in planes starts without flat tetrahedra. Exchanges in planes then take
-/// less time than cavities for each edge.
-const MANY: usize = 1_000;
+/// Missing edges and triangles, relative to the triangles, from which a surface in planes starts without flat tetrahedra.
+/// Exchanges in planes then take less time than cavities for each edge.
+const MANY: f64 = 0.5;
 
 /// Maximum rounds over all strategies.
 const MAX_ROUNDS: u32 = 7;
@@ -130,7 +132,7 @@ pub(super) fn recover_rest(
     let filled_thick = turned.map(|height| filled(Some(height), &RecoveryStrategy::TURNED));
     let filled = filled(None, &RecoveryStrategy::GIVEN);
     let mut attempts: Vec<Attempt> = Vec::new();
-    let many = edges.len() + missing.triangles.len() >= MANY;
+    let many = (edges.len() + missing.triangles.len()) as f64 >= MANY * r.surface.triangles.len() as f64;
     if edges_turned || (is_turned && many) {
         attempts.extend(turned.map(thick).into_iter().chain(filled_thick));
         attempts.extend([given, filled]);
@@ -321,8 +323,8 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let first = OPERATIONS.0 * recovery.missing() as u64 + OPERATIONS.1 * r.surface.triangles.len() as u64;
-            let budget = Budget::new(share * first);
+            let constant = MAX_CONSTANT.min(OPERATIONS.1 * r.surface.triangles.len() as u64);
+            let budget = Budget::new(share * (OPERATIONS.0 * recovery.missing() as u64 + constant));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
             effort.left = effort.left.saturating_sub(budget.spent());

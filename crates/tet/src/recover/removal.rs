@@ -91,8 +91,8 @@ impl Removal {
         }
     }
 
-    /// Neighbours of a vertex, with the size of the ring around the edge and one of its tetrahedra; `None` on the
-    /// boundary, and for more than [`MAX_STAR`] tetrahedra.
+    /// Neighbours of a vertex, with the size of the ring around the edge and one of its tetrahedra. `None` on the boundary,
+    /// and for more than [`MAX_STAR`] tetrahedra.
     fn neighbors(&mut self, c: &Complex, v: u32) -> Option<Vec<(usize, u32, u32)>> {
         let star = self.star.around(c, v);
         if star.len() > MAX_STAR || star.iter().any(|&t| c.is_ghost(t)) {
