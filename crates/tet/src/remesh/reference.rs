@@ -1,0 +1,131 @@
+//! Input surface of the remeshing: its smooth patches, their normals, and closest points on them.
+
+use super::features::{self, Features};
+use crate::plc::PlcRef;
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle, unit_normal};
+
+/// Minimum cosine between the normals of a triangle and of the input there: 45°, a little more than the angle of features.
+const COMPATIBLE: f64 = 0.7;
+
+/// Doublings of the radius of a search for the closest point.
+const WIDER: usize = 5;
+
+/// Input surface, with the tolerance of each triangle.
+pub(super) struct Reference<'a> {
+    pub plc: PlcRef<'a>,
+    pub features: Features,
+    /// Unit normal of each triangle; that of its neighbours for a triangle flatter than the tolerance.
+    pub normals: Vec<Vec3>,
+    /// Allowed distance from each triangle, and of each point.
+    pub allowed: Vec<f64>,
+    pub allowed_points: Vec<f64>,
+    tree: Bvh,
+    tolerance: f64,
+}
+
+impl<'a> Reference<'a> {
+    pub fn new(plc: PlcRef<'a>, tolerance: f64) -> Self {
+        let surface = plc.surface;
+        let boxes: Vec<Aabb> =
+            surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
+        let (features, normals) = features::find(plc, tolerance);
+        let allowed = vec![tolerance; surface.triangles.len()];
+        let allowed_points = vec![tolerance; surface.points.len()];
+        Self { plc, features, normals, allowed, allowed_points, tree: Bvh::of(boxes), tolerance }
+    }
+
+    /// Sets the allowed distances from those of triangles.
+    pub fn allow(&mut self, allowed: Vec<f64>) {
+        self.allowed_points.fill(self.tolerance);
+        for (t, &distance) in self.plc.surface.triangles.iter().zip(&allowed) {
+            for &v in t {
+                let least = &mut self.allowed_points[v as usize];
+                *least = least.min(distance);
+            }
+        }
+        self.allowed = allowed;
+    }
+
+    pub fn corners(&self, t: u32) -> [&Point3; 3] {
+        self.plc.surface.triangles[t as usize].map(|v| &self.plc.surface.points[v as usize])
+    }
+
+    /// Input triangles whose boxes overlap a box.
+    pub fn query(&self, aabb: &Aabb, found: impl FnMut(u32)) {
+        self.tree.query(aabb, found);
+    }
+
+    fn is_compatible(&self, t: u32, normal: &Vec3, patch: u32) -> bool {
+        self.features.patches[t as usize] == patch && normal.dot(&self.normals[t as usize]) > COMPATIBLE
+    }
+
+    /// Input triangle of a patch, with a compatible normal, within its tolerance of a point. Triangles of `hints` are tried first.
+    pub fn within(&self, p: &Point3, normal: &Vec3, patch: u32, hints: &[u32]) -> Option<u32> {
+        let fits = |t: u32| {
+            self.is_compatible(t, normal, patch) && point_triangle(p, self.corners(t)).1 <= self.allowed[t as usize]
+        };
+        if let Some(&t) = hints.iter().find(|&&t| fits(t)) {
+            return Some(t);
+        }
+        let radius = hints.iter().map(|&t| 2.0 * self.allowed[t as usize]).fold(0.0, f64::max).min(self.tolerance);
+        let mut found: Option<u32> = None;
+        self.tree.query(&Aabb::of_points([p]).grown(radius), |t| {
+            if found.is_none_or(|best| t < best) && fits(t) {
+                found = Some(t);
+            }
+        });
+        found
+    }
+
+    /// Closest point of a patch with compatible normals, and its triangle.
+    pub fn project(&self, p: &Point3, normal: &Vec3, patch: u32, hints: &[u32]) -> Option<(Point3, u32)> {
+        let mut best: Option<(f64, u32, Point3)> = None;
+        let mut consider = |t: u32| {
+            if self.is_compatible(t, normal, patch) {
+                let (q, distance) = point_triangle(p, self.corners(t));
+                if best.is_none_or(|(least, id, _)| (distance, t) < (least, id)) {
+                    best = Some((distance, t, q));
+                }
+            }
+            best.map(|(distance, ..)| distance)
+        };
+        let mut near = None;
+        for &t in hints {
+            near = consider(t).or(near);
+        }
+        match near {
+            Some(radius) => self.tree.query(&Aabb::of_points([p]).grown(radius), |t| {
+                consider(t);
+            }),
+            None => {
+                let mut radius = self.tolerance;
+                for _ in 0..WIDER {
+                    let mut found = None;
+                    self.tree.query(&Aabb::of_points([p]).grown(radius), |t| found = consider(t));
+                    if found.is_some_and(|distance| distance <= radius) {
+                        break;
+                    }
+                    radius *= 2.0;
+                }
+            }
+        }
+        best.map(|(_, t, q)| (q, t))
+    }
+
+    /// Distance of a point from the surface, which is at most that from the triangle `hint`.
+    pub fn distance(&self, p: &Point3, hint: u32) -> f64 {
+        nearest(&self.tree, p, hint, |t| self.corners(t))
+    }
+}
+
+/// Distance of a point from the closest triangle of a tree; it is at most that of `hint`.
+pub(super) fn nearest<'a>(tree: &Bvh, p: &Point3, hint: u32, corners: impl Fn(u32) -> [&'a Point3; 3]) -> f64 {
+    let mut least = point_triangle(p, corners(hint)).1;
+    tree.query(&Aabb::of_points([p]).grown(least), |t| least = least.min(point_triangle(p, corners(t)).1));
+    least
+}
+
+/// Unit normal of a triangle.
+pub(super) fn normal_of([a, b, c]: [&Point3; 3]) -> Vec3 {
+    unit_normal(a.coords, b.coords, c.coords)
+}
