@@ -10,7 +10,7 @@ use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
 use super::plc::LeftOut;
-use super::plc::{InputKind, PlcRef};
+use super::plc::{InputKind, InputPart, PlcRef};
 use super::progress::{Progress, Stage, Watch};
 use super::recover::RecoverySummary;
 use super::refine::RefineReport;
@@ -349,8 +349,13 @@ impl Tetrahedralizer {
             most: self.max_tets,
         };
         let Remeshed { plc: new, origins, summary } = remesh(plc, &wanted, watch)?;
-        let mut done = keep.run_watched((&new).into(), watch)?;
         let origin = |&t: &u32| origins.get(t as usize).copied().unwrap_or(t);
+        let mut done = keep.run_watched((&new).into(), watch).map_err(|error| match error {
+            TetError::Outside { part: part @ InputPart::Triangles, ids, count } => {
+                TetError::Outside { part, ids: ids.iter().map(origin).collect(), count }
+            }
+            other => other,
+        })?;
         done.origins =
             if done.origins.is_empty() { origins.clone() } else { done.origins.iter().map(origin).collect() };
         let left_out = &mut done.summary.left_out.triangles;

@@ -22,12 +22,12 @@ impl Surface<'_> {
     /// # Errors
     /// [`Stop`] if the watch stops it.
     pub fn collapse_short(&mut self, counter: &mut Counter) -> Result<usize, Stop> {
-        let mut short: Vec<(f64, [u32; 2])> = self
-            .edges()
-            .into_iter()
-            .map(|e| (self.relative_length(e), e))
-            .filter(|(length, _)| *length < SHORT)
-            .collect();
+        // A refused collapse stays refused as long as the triangles around both ends stay.
+        let is_due = |&[a, b]: &[u32; 2]| self.touched[a as usize].max(self.touched[b as usize]) >= self.collapsed;
+        let lengths = self.edges().into_iter().filter(is_due).map(|e| (self.relative_length(e), e));
+        let mut short: Vec<(f64, [u32; 2])> = lengths.filter(|(length, _)| *length < SHORT).collect();
+        self.pass += 1;
+        self.collapsed = self.pass;
         short.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         let mut collapses = 0;
         for (_, [a, b]) in short {

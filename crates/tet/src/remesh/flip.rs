@@ -20,7 +20,8 @@ impl Surface<'_> {
     /// # Errors
     /// [`Stop`] if the watch stops it.
     pub fn flip_all(&mut self, counter: &mut Counter) -> Result<(), Stop> {
-        let mut edges = self.edges();
+        // A refused flip stays refused as long as the two triangles stay.
+        let mut edges = self.take_changed_edges();
         let mut left = MAX_FLIPS * edges.len();
         while let Some(edge) = edges.pop() {
             counter.add(OPERATIONS)?;
@@ -32,6 +33,7 @@ impl Surface<'_> {
                 edges.extend(outer);
             }
         }
+        self.changed.clear();
         Ok(())
     }
 
@@ -45,6 +47,10 @@ impl Surface<'_> {
         let &[t, u] = old.as_slice() else { return None };
         let [first, second] = [t, u].map(|t| self.triangles[t as usize]);
         let (c, d) = (self.apex(t, [a, b]), self.apex(u, [a, b]));
+        let least = self.smallest_angle_of(&old) + GAIN;
+        if self.smallest_angle([a, c, d]).min(self.smallest_angle([b, c, d])) < least {
+            return None;
+        }
         let is_edge = self.around[c as usize].iter().any(|&t| self.triangles[t as usize].contains(&d));
         if c == d || is_edge {
             return None;
@@ -52,7 +58,6 @@ impl Surface<'_> {
         let swap = |t: [u32; 3], from: u32, to: u32| t.map(|v| if v == from { to } else { v });
         // The first keeps its side at `a`, the second at `b`.
         let new = [(swap(first, b, d), self.patch[t as usize]), (swap(second, a, c), self.patch[u as usize])];
-        let least = self.smallest_angle_of(&old) + GAIN;
         let pieces = self.plan(&old, &new, &[], least)?;
         self.replace(&old, pieces);
         Some([edge(a, c), edge(c, b), edge(b, d), edge(d, a)])

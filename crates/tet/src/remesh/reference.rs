@@ -2,6 +2,7 @@
 
 use super::features::{self, Features};
 use crate::plc::PlcRef;
+use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle, unit_normal};
 
 /// Minimum cosine between the normals of a triangle and of the input there: 45°, a little more than the angle of features.
@@ -9,6 +10,11 @@ const COMPATIBLE: f64 = 0.7;
 
 /// Doublings of the radius of a search for the closest point.
 const WIDER: usize = 5;
+
+/// Maximum length of pieces of triangles in the search tree, as a share of the diagonal, and maximum bisections of a
+/// triangle. More pieces cost more than they save on the shared surfaces.
+const PIECES: f64 = 64.0;
+const DEPTH: u32 = 8;
 
 /// Input surface, with the tolerance of each triangle.
 pub(super) struct Reference<'a> {
@@ -20,18 +26,19 @@ pub(super) struct Reference<'a> {
     pub allowed: Vec<f64>,
     pub allowed_points: Vec<f64>,
     tree: Bvh,
+    /// Triangle of each box of the tree. Long triangles have several.
+    owners: Vec<u32>,
     tolerance: f64,
 }
 
 impl<'a> Reference<'a> {
     pub fn new(plc: PlcRef<'a>, tolerance: f64) -> Self {
         let surface = plc.surface;
-        let boxes: Vec<Aabb> =
-            surface.triangles.iter().map(|t| Aabb::of_points(t.map(|v| &surface.points[v as usize]))).collect();
+        let (boxes, owners) = boxes(surface);
         let (features, normals) = features::find(plc, tolerance);
         let allowed = vec![tolerance; surface.triangles.len()];
         let allowed_points = vec![tolerance; surface.points.len()];
-        Self { plc, features, normals, allowed, allowed_points, tree: Bvh::of(boxes), tolerance }
+        Self { plc, features, normals, allowed, allowed_points, tree: Bvh::of(boxes), owners, tolerance }
     }
 
     /// Sets the allowed distances from those of triangles.
@@ -50,9 +57,9 @@ impl<'a> Reference<'a> {
         self.plc.surface.triangles[t as usize].map(|v| &self.plc.surface.points[v as usize])
     }
 
-    /// Input triangles whose boxes overlap a box.
-    pub fn query(&self, aabb: &Aabb, found: impl FnMut(u32)) {
-        self.tree.query(aabb, found);
+    /// Input triangles with boxes that overlap a box; some several times.
+    pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
+        self.tree.query(aabb, |i| found(self.owners[i as usize]));
     }
 
     fn is_compatible(&self, t: u32, normal: &Vec3, patch: u32) -> bool {
@@ -69,7 +76,7 @@ impl<'a> Reference<'a> {
         }
         let radius = hints.iter().map(|&t| 2.0 * self.allowed[t as usize]).fold(0.0, f64::max).min(self.tolerance);
         let mut found: Option<u32> = None;
-        self.tree.query(&Aabb::of_points([p]).grown(radius), |t| {
+        self.query(&Aabb::of_points([p]).grown(radius), |t| {
             if found.is_none_or(|best| t < best) && fits(t) {
                 found = Some(t);
             }
@@ -94,14 +101,14 @@ impl<'a> Reference<'a> {
             near = consider(t).or(near);
         }
         match near {
-            Some(radius) => self.tree.query(&Aabb::of_points([p]).grown(radius), |t| {
+            Some(radius) => self.query(&Aabb::of_points([p]).grown(radius), |t| {
                 consider(t);
             }),
             None => {
                 let mut radius = self.tolerance;
                 for _ in 0..WIDER {
                     let mut found = None;
-                    self.tree.query(&Aabb::of_points([p]).grown(radius), |t| found = consider(t));
+                    self.query(&Aabb::of_points([p]).grown(radius), |t| found = consider(t));
                     if found.is_some_and(|distance| distance <= radius) {
                         break;
                     }
@@ -114,8 +121,34 @@ impl<'a> Reference<'a> {
 
     /// Distance of a point from the surface, which is at most that from the triangle `hint`.
     pub fn distance(&self, p: &Point3, hint: u32) -> f64 {
-        nearest(&self.tree, p, hint, |t| self.corners(t))
+        let mut least = point_triangle(p, self.corners(hint)).1;
+        self.query(&Aabb::of_points([p]).grown(least), |t| least = least.min(point_triangle(p, self.corners(t)).1));
+        least
     }
+}
+
+/// Boxes of pieces of the triangles, each with its triangle. Boxes of whole needles would overlap most others.
+fn boxes(surface: &TriMesh) -> (Vec<Aabb>, Vec<u32>) {
+    let all = Aabb::of_points(&surface.points);
+    let longest = all.diagonal() / PIECES;
+    let (mut boxes, mut owners) = (Vec::new(), Vec::new());
+    for (t, corners) in (0..).zip(&surface.triangles) {
+        let mut pieces = vec![(corners.map(|v| surface.points[v as usize]), 0)];
+        while let Some(([a, b, c], depth)) = pieces.pop() {
+            let sides = [(b - c).norm(), (c - a).norm(), (a - b).norm()];
+            let k = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
+            if sides[k] <= longest || depth == DEPTH {
+                boxes.push(Aabb::of_points([&a, &b, &c]));
+                owners.push(t);
+                continue;
+            }
+            let [p, q, r] = [[a, b, c], [b, c, a], [c, a, b]][k];
+            let middle = nalgebra::center(&q, &r);
+            // A rounded middle lies in the box of both ends, so the boxes leave no gap beyond roundoff.
+            pieces.extend([([p, q, middle], depth + 1), ([p, middle, r], depth + 1)]);
+        }
+    }
+    (boxes, owners)
 }
 
 /// Distance of a point from the closest triangle of a tree; it is at most that of `hint`.

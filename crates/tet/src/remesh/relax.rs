@@ -11,7 +11,7 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 const ENOUGH: f64 = 0.52;
 
 /// Minimum motion, relative to the wanted edge length.
-const LEAST: f64 = 0.01;
+const LEAST: f64 = 0.03;
 
 /// Shares of the wanted motion that are tried.
 const STEPS: [f64; 2] = [1.0, 0.4];
@@ -27,7 +27,8 @@ impl Surface<'_> {
     pub fn relax(&mut self, counter: &mut Counter) -> Result<(), Stop> {
         for v in 0..self.points.len() as u32 {
             counter.add(OPERATIONS)?;
-            if self.around[v as usize].is_empty() {
+            // A refused motion stays refused as long as the triangles around stay.
+            if !std::mem::take(&mut self.is_due[v as usize]) || self.around[v as usize].is_empty() {
                 continue;
             }
             match self.freedom[v as usize] {

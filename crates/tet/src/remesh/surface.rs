@@ -43,6 +43,14 @@ pub(super) struct Surface<'a> {
     pub lines: FxHashMap<[u32; 2], Vec<u32>>,
     /// Edges that stay.
     pub locked: FxHashSet<[u32; 2]>,
+    /// Triangles that changed since the last flips.
+    pub changed: Vec<u32>,
+    /// True for vertices whose triangles changed since the last attempt to move them.
+    pub is_due: Vec<bool>,
+    /// Pass in which the triangles of each vertex changed last, the present pass, and the last one with collapses.
+    pub touched: Vec<u32>,
+    pub pass: u32,
+    pub collapsed: u32,
     free: Vec<u32>,
 }
 
@@ -80,6 +88,11 @@ impl<'a> Surface<'a> {
             wanted: sizes.wanted.clone(),
             lines: reference.features.lines.iter().map(|&line| (line, Vec::new())).collect(),
             locked,
+            changed: (0..surface.triangles.len() as u32).collect(),
+            is_due: vec![true; n],
+            touched: vec![0; n],
+            pass: 0,
+            collapsed: 0,
             free: Vec::new(),
         }
     }
@@ -104,11 +117,13 @@ impl<'a> Surface<'a> {
 
     /// All edges, ascending.
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        let alive = self.triangles.iter().filter(|t| t[0] != NONE);
-        let mut edges: Vec<[u32; 2]> = alive.flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
+        edges_of(self.triangles.iter())
+    }
+
+    /// Edges of the triangles that changed since the last call, ascending.
+    pub fn take_changed_edges(&mut self) -> Vec<[u32; 2]> {
+        let changed = std::mem::take(&mut self.changed);
+        edges_of(changed.iter().map(|&t| &self.triangles[t as usize]))
     }
 
     /// Triangles at an edge.
@@ -245,8 +260,11 @@ impl<'a> Surface<'a> {
             let t = self.slot();
             self.triangles[t as usize] = corners;
             (self.patch[t as usize], self.near[t as usize], self.held[t as usize]) = (patch, near, held);
+            self.changed.push(t);
             for v in corners {
                 self.around[v as usize].push(t);
+                self.is_due[v as usize] = true;
+                self.touched[v as usize] = self.pass;
             }
         }
     }
@@ -275,6 +293,8 @@ impl<'a> Surface<'a> {
         self.base.push(base);
         self.wanted.push(wanted);
         self.around.push(Vec::new());
+        self.is_due.push(true);
+        self.touched.push(self.pass);
         self.points.len() as u32 - 1
     }
 
@@ -286,7 +306,18 @@ impl<'a> Surface<'a> {
         self.base.pop();
         self.wanted.pop();
         self.around.pop();
+        self.is_due.pop();
+        self.touched.pop();
     }
+}
+
+/// Edges of triangles that are not removed, ascending.
+fn edges_of<'a>(triangles: impl Iterator<Item = &'a [u32; 3]>) -> Vec<[u32; 2]> {
+    let alive = triangles.filter(|t| t[0] != NONE);
+    let mut edges: Vec<[u32; 2]> = alive.flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// Smallest angle of a triangle, in radians.

@@ -106,7 +106,7 @@ fn needles_of_a_sphere_disappear() {
     let surface = banded_sphere(30);
     let plc = Plc::from(&surface);
     let made = remeshed(&plc, InputKind::Closed, &DEFAULT);
-    let summary = made.summary;
+    let summary = &made.summary;
     assert!(summary.smallest_angle[0] < 6.0 && summary.smallest_angle[1] > 20.0, "{summary:?}");
     assert_eq!(summary.frozen, 0);
     let change = volume(&made.plc.surface) / volume(&surface);
