@@ -104,9 +104,7 @@ fn normals(plc: PlcRef, sides: &[Side], height: f64) -> Vec<Vec3> {
     let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
     let mut normals: Vec<Vec3> = surface.triangles.iter().map(|t| normal_of(corners(t))).collect();
     let areas: Vec<f64> = surface.triangles.iter().map(|t| area(corners(t))).collect();
-    let longest = |[a, b, c]: [&Point3; 3]| (a - b).norm().max((b - c).norm()).max((c - a).norm());
-    let mut is_flat: Vec<bool> =
-        surface.triangles.iter().zip(&areas).map(|(t, area)| 2.0 * area < height * longest(corners(t))).collect();
+    let mut is_flat: Vec<bool> = surface.triangles.iter().map(|t| is_lower(corners(t), height)).collect();
     for _ in 0..PASSES {
         let mut sums = vec![Vec3::zeros(); normals.len()];
         for run in sides.chunk_by(|x, y| x.edge == y.edge) {
@@ -129,6 +127,11 @@ fn normals(plc: PlcRef, sides: &[Side], height: f64) -> Vec<Vec3> {
         }
     }
     normals
+}
+
+/// True for a triangle lower than a height.
+fn is_lower([a, b, c]: [&Point3; 3], height: f64) -> bool {
+    2.0 * area([a, b, c]) < height * (a - b).norm().max((b - c).norm()).max((c - a).norm())
 }
 
 /// Area of a triangle.

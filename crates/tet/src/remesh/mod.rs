@@ -114,15 +114,11 @@ pub(super) fn remesh(plc: PlcRef, wanted: &Wanted, watch: &Watch) -> Result<Reme
     let mut reference = Reference::new(plc, tolerance);
     watch.ask()?;
     let sizes = sizes::sizes(&reference, wanted, tolerance);
-    let allowed = allowed(plc, &sizes, tolerance);
+    let most: Vec<f64> = sizes.wanted.iter().map(|length| SHARE * length).collect();
     let mut faults = near_loose_parts(&reference, tolerance);
     for round in 0..ROUNDS {
-        let reduced = allowed
-            .iter()
-            .zip(&faults)
-            .map(|(distance, &faults)| if faults < FAULTS { distance * REDUCTION.powi(faults as i32) } else { 0.0 });
-        let reduced = reduced.collect();
-        reference.allow(reduced);
+        let factor = |&faults: &u32| if faults < FAULTS { REDUCTION.powi(faults as i32) } else { 0.0 };
+        reference.allow(&most, &faults.iter().map(factor).collect::<Vec<_>>());
         let frozen: Vec<bool> = faults.iter().map(|&faults| faults >= FAULTS).collect();
         watch.report(Stage::Remesh, round, ROUNDS)?;
         let made = Compact::of(&iterate(&reference, &sizes, &frozen, wanted.most, watch)?);
@@ -135,15 +131,6 @@ pub(super) fn remesh(plc: PlcRef, wanted: &Wanted, watch: &Watch) -> Result<Reme
         add_faults(plc.surface, &verified.faults, round >= STRICT, &mut faults);
     }
     Ok(unchanged(plc, tolerance))
-}
-
-/// Distance that each input triangle allows.
-fn allowed(plc: PlcRef, sizes: &Sizes, tolerance: f64) -> Vec<f64> {
-    let of = |t: &[u32; 3]| {
-        let least = t.iter().map(|&v| sizes.wanted[v as usize]).fold(f64::INFINITY, f64::min);
-        tolerance.min(SHARE * least)
-    };
-    plc.surface.triangles.iter().map(of).collect()
 }
 
 /// Faults of input triangles at the start: those near segments and points without triangles stay.

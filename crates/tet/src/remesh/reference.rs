@@ -41,16 +41,18 @@ impl<'a> Reference<'a> {
         Self { plc, features, normals, allowed, allowed_points, tree: Bvh::of(boxes), owners, tolerance }
     }
 
-    /// Sets the allowed distances from those of triangles.
-    pub fn allow(&mut self, allowed: Vec<f64>) {
-        self.allowed_points.fill(self.tolerance);
-        for (t, &distance) in self.plc.surface.triangles.iter().zip(&allowed) {
+    /// Sets the allowed distances: the tolerance, but at most `most` at each point, times the factor of each triangle.
+    pub fn allow(&mut self, most: &[f64], factors: &[f64]) {
+        self.allowed_points.iter_mut().zip(most).for_each(|(allowed, most)| *allowed = most.min(self.tolerance));
+        for ((t, factor), allowed) in self.plc.surface.triangles.iter().zip(factors).zip(&mut self.allowed) {
+            // Needles may have one corner in a fine part.
+            let coarsest = t.iter().map(|&v| most[v as usize]).fold(0.0, f64::max);
+            *allowed = factor * coarsest.min(self.tolerance);
             for &v in t {
                 let least = &mut self.allowed_points[v as usize];
-                *least = least.min(distance);
+                *least = least.min(factor * self.tolerance);
             }
         }
-        self.allowed = allowed;
     }
 
     pub fn corners(&self, t: u32) -> [&Point3; 3] {
@@ -62,6 +64,7 @@ impl<'a> Reference<'a> {
         self.tree.query(aabb, |i| found(self.owners[i as usize]));
     }
 
+    /// True if a triangle has the given patch and about the given normal.
     fn is_compatible(&self, t: u32, normal: &Vec3, patch: u32) -> bool {
         self.features.patches[t as usize] == patch && normal.dot(&self.normals[t as usize]) > COMPATIBLE
     }

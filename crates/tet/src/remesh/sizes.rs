@@ -62,34 +62,30 @@ fn own_lengths(r: &Reference) -> Vec<f64> {
     sums.iter().zip(&counts).map(|(sum, count): (&f64, &f64)| (SQUARE * sum / count.max(1.0)).sqrt()).collect()
 }
 
-/// Limits lengths to chords within the tolerance: √(8 · tolerance · radius), but not below the input's own resolution.
+/// Limits lengths to chords within the tolerance: √(8 · tolerance · radius), but not below the input's own resolution. The
+/// curvature at a vertex is the mean over its edges, weighted by their turn: plane triangles beside a fillet do not count.
 fn limit_by_curvature(r: &Reference, tolerance: f64, wanted: &mut [f64]) {
     let surface = r.plc.surface;
-    // Integrals of curvature and of curvature times height, per triangle.
-    let mut turns = vec![[0.0; 2]; surface.triangles.len()];
+    // Sums of the turn, and of the turn times curvature and height.
+    let mut sums = vec![[0.0; 3]; wanted.len()];
     for &([a, b], [t, u]) in &r.features.smooth {
         let length = (surface.points[a as usize] - surface.points[b as usize]).norm();
-        let cosine = r.normals[t as usize].dot(&r.normals[u as usize]);
-        let height = (area(r.corners(t)) + area(r.corners(u))) / length;
-        let turn = 0.5 * length * cosine.clamp(-1.0, 1.0).acos();
-        for t in [t, u] {
-            turns[t as usize][0] += turn;
-            turns[t as usize][1] += turn * height;
-        }
-    }
-    let mut sums = vec![[0.0; 3]; wanted.len()];
-    for (t, corners) in (0_u32..).zip(&surface.triangles) {
-        let [turn, weighted] = turns[t as usize];
-        let area = area(r.corners(t));
-        for &v in corners {
+        let height = 2.0 * area(r.corners(t)).min(area(r.corners(u))) / length;
+        let angle = r.normals[t as usize].dot(&r.normals[u as usize]).clamp(-1.0, 1.0).acos();
+        let turn = angle * length;
+        // Turns within less than the tolerance are noise.
+        let curvature = angle / height.max(tolerance);
+        let corners = [t, u].into_iter().flat_map(|t| surface.triangles[t as usize]);
+        // Both ends occur twice, the apexes once.
+        for v in corners {
             let sum = &mut sums[v as usize];
-            *sum = [sum[0] + turn, sum[1] + weighted, sum[2] + area];
+            *sum = [sum[0] + turn, sum[1] + turn * curvature, sum[2] + turn * height];
         }
     }
-    for (length, [turn, weighted, area]) in wanted.iter_mut().zip(sums) {
-        if turn > 0.0 && area > 0.0 {
-            let chord = (8.0 * tolerance * area / turn).sqrt();
-            *length = length.min(chord.max(SIDE * weighted / turn).max(LEAST * tolerance));
+    for (length, [turn, curvature, height]) in wanted.iter_mut().zip(sums) {
+        if curvature > 0.0 {
+            let chord = (8.0 * tolerance * turn / curvature).sqrt();
+            *length = length.min(chord.max(SIDE * height / turn).max(LEAST * tolerance));
         }
     }
 }
