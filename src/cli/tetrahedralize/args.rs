@@ -95,12 +95,13 @@ pub struct Args {
     /// Allow splitting of input triangles, as TetGen without -Y
     #[arg(long, conflicts_with = "tetgen")]
     pub split: bool,
-    /// Remesh the surface with well-shaped triangles within TOLERANCE of the input (default: 0.001 of the diagonal of its box).
-    /// Kept are edges above 40°, corners, edges between markers, and the topology. Edge lengths are those of --size, or of
-    /// the input, and less at curvature
+    /// Remesh the surface within DIST (default: 0.001 of its diagonal)
+    ///
+    /// Edges above 40°, corners, edges between markers, and the topology stay. Edge lengths are those of --size or of the
+    /// input, and less at curvature.
     #[arg(
         long,
-        value_name = "TOLERANCE",
+        value_name = "DIST",
         num_args = 0..=1,
         require_equals = true,
         default_missing_value = RemeshArgs::DEFAULT,
@@ -108,7 +109,7 @@ pub struct Args {
         value_parser = RemeshArgs::parse
     )]
     pub remesh_surface: Option<RemeshArgs>,
-    /// Repair the input first: orient triangles, and merge exact duplicates
+    /// Repair the input first: orient triangles, merge exact duplicates
     #[arg(long)]
     pub repair: bool,
     /// Fail instead of ignoring input: facets and segments outside the filled region or in a hole, and bytes after the last

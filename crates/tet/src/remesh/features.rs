@@ -1,9 +1,8 @@
 //! Features of the input that remeshing keeps: lines, corners, and the smooth patches between them.
 
-use super::reference::normal_of;
 use crate::plc::PlcRef;
 use anastomesh_mesh::adjacency::Incidence;
-use anastomesh_mesh::geometry::{DisjointSets, Point3, Vec3, point_segment};
+use anastomesh_mesh::geometry::{DisjointSets, Point3, Vec3, point_segment, unit_normal};
 use rustc_hash::FxHashSet;
 
 /// Cosine of the angle between normals above which an edge is a feature: 40°. Tubes of 12 segments (30°) stay smooth, and
@@ -127,6 +126,11 @@ fn normals(plc: PlcRef, sides: &[Side], height: f64) -> Vec<Vec3> {
         }
     }
     normals
+}
+
+/// Unit normal of a triangle.
+pub(super) fn normal_of([a, b, c]: [&Point3; 3]) -> Vec3 {
+    unit_normal(a.coords, b.coords, c.coords)
 }
 
 /// True for a triangle lower than a height.

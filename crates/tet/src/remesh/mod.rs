@@ -1,8 +1,8 @@
 //! Remeshing of the input surface ([`Boundary::Remesh`](crate::Boundary::Remesh)): incremental isotropic remeshing within a
 //! tolerance.
 //!
-//! Edges are split, collapsed and flipped towards a wanted length, and vertices move along the surface (Botsch and Kobbelt, 'A
-//! remeshing approach to multiresolution modeling', 2004). Lengths follow curvature (Dunyach et al., 'Adaptive remeshing
+//! Edges are split, collapsed and flipped towards a wanted length, and vertices move along the surface. The method is that of
+//! Botsch and Kobbelt, 'A remeshing approach to multiresolution modeling', 2004. Lengths follow curvature (Dunyach et al., 'Adaptive remeshing
 //! for real-time mesh deformation', 2013). Each operation keeps the topology, the features, and the distance from the input
 //! in both directions. The result is tested exactly for self-intersections. Where it fails, the tolerance is reduced, and at
 //! last the triangles of the input are kept.
@@ -13,6 +13,7 @@ mod flip;
 mod mend;
 mod reference;
 mod relax;
+mod request;
 mod sizes;
 mod split;
 mod surface;
@@ -25,8 +26,9 @@ use crate::plc::{Plc, PlcRef};
 use crate::progress::{Counter, Stage, Watch};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::adjacency::vertices_of;
-use anastomesh_mesh::geometry::{Aabb, Point3};
+use anastomesh_mesh::geometry::Aabb;
 use reference::Reference;
+pub(super) use request::Wanted;
 use sizes::Sizes;
 use surface::{Surface, smallest_angle};
 use verify::{Compact, verify};
@@ -79,18 +81,6 @@ pub struct RemeshSummary {
     pub frozen: usize,
     /// Segments of the input, with the ids of their points in the mesh.
     pub segments: Vec<[u32; 2]>,
-}
-
-/// Request for a remeshed surface.
-pub(super) struct Wanted<'a> {
-    /// Maximum distance from the input; `None`: the default.
-    pub tolerance: Option<f64>,
-    /// Edge lengths in place of the input's own.
-    pub size: Option<&'a dyn Fn(&Point3) -> f64>,
-    /// Maximum edge length.
-    pub longest: f64,
-    /// Maximum number of triangles.
-    pub most: usize,
 }
 
 /// Remeshed input.

@@ -3,7 +3,7 @@
 use super::features::{self, Features};
 use crate::plc::PlcRef;
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle, unit_normal};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, point_triangle};
 
 /// Minimum cosine between the normals of a triangle and of the input there: 45°, a little more than the angle of features.
 const COMPATIBLE: f64 = 0.7;
@@ -159,9 +159,4 @@ pub(super) fn nearest<'a>(tree: &Bvh, p: &Point3, hint: u32, corners: impl Fn(u3
     let mut least = point_triangle(p, corners(hint)).1;
     tree.query(&Aabb::of_points([p]).grown(least), |t| least = least.min(point_triangle(p, corners(t)).1));
     least
-}
-
-/// Unit normal of a triangle.
-pub(super) fn normal_of([a, b, c]: [&Point3; 3]) -> Vec3 {
-    unit_normal(a.coords, b.coords, c.coords)
 }

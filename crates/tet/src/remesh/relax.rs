@@ -1,7 +1,6 @@
 //! Relaxation: vertices move along the surface, or along their line, towards the centre of their neighbours.
 
-use super::features::{Freedom, edge};
-use super::reference::normal_of;
+use super::features::{Freedom, edge, normal_of};
 use super::surface::{NONE, Surface};
 use crate::progress::Counter;
 use anastomesh_mesh::budget::Stop;

@@ -1,8 +1,8 @@
 //! Edge lengths that remeshing aims at: as the input's triangles by their area, less at curvature and thin parts, graded.
 
-use super::Wanted as Request;
 use super::features::{Freedom, area, edge};
 use super::reference::Reference;
+use super::request::Wanted as Request;
 use anastomesh_mesh::adjacency::Incidence;
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;

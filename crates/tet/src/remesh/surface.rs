@@ -1,7 +1,7 @@
 //! Surface under change: triangles, feature lines, and the input points that each triangle stands for.
 
-use super::features::{Freedom, edge};
-use super::reference::{Reference, normal_of};
+use super::features::{Freedom, edge, normal_of};
+use super::reference::Reference;
 use super::sizes::Sizes;
 use anastomesh_mesh::geometry::predicates::collinear;
 use anastomesh_mesh::geometry::{Point3, point_segment, point_triangle};
