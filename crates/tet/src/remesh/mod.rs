@@ -56,7 +56,7 @@ const ROUNDS: usize = 8;
 
 /// Factor of the tolerance at each fault, and faults after which a triangle of the input stays.
 const REDUCTION: f64 = 0.25;
-const FAULTS: u32 = 2;
+const FAULTS: u32 = 3;
 
 /// Round from which triangles at faults, and those around them, stay at once.
 const STRICT: usize = 4;
@@ -141,7 +141,9 @@ fn near_loose_parts(r: &Reference, tolerance: f64) -> Vec<u32> {
 /// Counts faults; in a strict round the triangles at them, and those around, stay.
 fn add_faults(surface: &TriMesh, found: &[u32], is_strict: bool, faults: &mut [u32]) {
     if !is_strict {
-        found.iter().for_each(|&t| faults[t as usize] += 1);
+        for &t in found {
+            faults[t as usize] += 1;
+        }
         return;
     }
     let mut is_near = vec![false; surface.points.len()];

@@ -103,20 +103,19 @@ impl<'a> Reference<'a> {
         for &t in hints {
             near = consider(t).or(near);
         }
-        match near {
-            Some(radius) => self.query(&Aabb::of_points([p]).grown(radius), |t| {
+        if let Some(radius) = near {
+            self.query(&Aabb::of_points([p]).grown(radius), |t| {
                 consider(t);
-            }),
-            None => {
-                let mut radius = self.tolerance;
-                for _ in 0..WIDER {
-                    let mut found = None;
-                    self.query(&Aabb::of_points([p]).grown(radius), |t| found = consider(t));
-                    if found.is_some_and(|distance| distance <= radius) {
-                        break;
-                    }
-                    radius *= 2.0;
+            });
+        } else {
+            let mut radius = self.tolerance;
+            for _ in 0..WIDER {
+                let mut found = None;
+                self.query(&Aabb::of_points([p]).grown(radius), |t| found = consider(t));
+                if found.is_some_and(|distance| distance <= radius) {
+                    break;
                 }
+                radius *= 2.0;
             }
         }
         best.map(|(_, t, q)| (q, t))

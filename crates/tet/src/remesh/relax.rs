@@ -79,17 +79,13 @@ impl Surface<'_> {
         let given = self.given[v as usize];
         let extra = if given == NONE { &[][..] } else { &[given] };
         let before = std::mem::replace(&mut self.points[v as usize], point);
-        match self.plan(&old, &new, extra, least) {
-            Some(pieces) => {
-                self.replace(&old, pieces);
-                self.given[v as usize] = NONE;
-                true
-            }
-            None => {
-                self.points[v as usize] = before;
-                false
-            }
-        }
+        let Some(pieces) = self.plan(&old, &new, extra, least) else {
+            self.points[v as usize] = before;
+            return false;
+        };
+        self.replace(&old, pieces);
+        self.given[v as usize] = NONE;
+        true
     }
 
     /// Moves a vertex along its line, so that the edges to both sides have equal relative lengths.

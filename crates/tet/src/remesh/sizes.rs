@@ -39,7 +39,9 @@ pub(super) fn sizes(r: &Reference, request: &Request, tolerance: f64) -> Sizes {
         Some(size) => surface.points.iter().map(size).collect(),
         None => own_lengths(r),
     };
-    base.iter_mut().for_each(|length| *length = length.min(request.longest));
+    for length in &mut base {
+        *length = length.min(request.longest);
+    }
     let mut wanted = base.clone();
     limit_by_curvature(r, tolerance, &mut wanted);
     limit_by_lines(r, tolerance, &mut wanted);

@@ -10,6 +10,10 @@ use anastomesh_mesh::geometry::Point3;
 /// Relative length above which edges are split (Botsch and Kobbelt 2004).
 pub(super) const LONG: f64 = 4.0 / 3.0;
 
+/// Angle in radians, 5°, and share of the present smallest angle. Splits make no angle that is smaller than both.
+const LEAST: f64 = 0.09;
+const KEPT: f64 = 0.4;
+
 /// Operations of a split, as counted by budgets.
 const OPERATIONS: usize = 50;
 
@@ -44,13 +48,11 @@ impl Surface<'_> {
         let old = self.at_edge([a, b]);
         let middle = nalgebra::center(&self.points[a as usize], &self.points[b as usize]);
         let wanted = self.wanted_at(&middle, [a, b], &old);
-        match self.chain(a, b) {
-            Some(chain) => self.split_line([a, b], &old, &chain, (middle, wanted)),
-            None => {
-                let m = self.add(middle, Freedom::Patch, NONE, wanted);
-                self.split_at([a, b], m, &old).then_some(m)
-            }
+        if let Some(chain) = self.chain(a, b) {
+            return self.split_line([a, b], &old, &chain, (middle, wanted));
         }
+        let m = self.add(middle, Freedom::Patch, NONE, wanted);
+        self.split_at([a, b], m, &old).then_some(m)
     }
 
     /// Edge lengths at a new vertex on an edge: the mean of its ends, graded from all vertices around.
@@ -134,10 +136,13 @@ impl Surface<'_> {
                 near.push(self.near[t as usize]);
             }
         }
+        let least = (KEPT * self.smallest_angle_of(old)).min(LEAST);
         let pieces = if is_checked {
-            self.plan(old, &new, &[], 0.5 * self.smallest_angle_of(old))
-        } else {
+            self.plan(old, &new, &[], least)
+        } else if new.iter().all(|(t, _)| self.smallest_angle(*t) >= least) {
             self.unchecked(old, &new, &near)
+        } else {
+            None
         };
         pieces.map(|pieces| self.replace(old, pieces)).is_some()
     }
