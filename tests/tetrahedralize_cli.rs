@@ -424,3 +424,42 @@ fn layers_are_made_and_what_cannot_be_is_refused() {
         );
     }
 }
+
+#[test]
+fn needles_of_a_surface_are_remeshed_on_request() {
+    let folder = folder();
+    let input = save(&folder, "s.off", &sphere(30));
+    let out = folder.path().join("out.vtu");
+    let report = &report(&input, &out, &["--remesh-surface=0.01", "--layers", "2"])["report"];
+    let change = &report["remeshed"];
+    let pair = |name: &str| [0, 1].map(|i| change[name][i].as_f64().expect("a number"));
+    let [before, after] = pair("smallest_angle");
+    assert!(before < 6.0 && after > 20.0, "{change}");
+    assert!(change["distance"].as_f64() <= Some(0.01) && change["tolerance"] == 0.01, "{change}");
+    assert_eq!(report["mesh"]["faces"], change["triangles"][1]);
+    assert_eq!(report["input"]["triangles"], change["triangles"][0]);
+    assert_code(&check(&out), FINE);
+    let said = run("tetrahedralize", &[&input], &["-o", out.to_str().expect("text"), "--remesh-surface"]);
+    assert_code(&said, FINE);
+    assert!(stderr(&said).contains("remeshed") && stderr(&said).contains("max distance"), "{}", stderr(&said));
+    let points = text(&folder, "p.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+    for (input, options, words) in [
+        (&input, &["--remesh-surface=0"][..], &["above zero"][..]),
+        (&input, &["--remesh-surface", "--split"], &["--split"]),
+        (&input, &["--remesh-surface", "--tetgen", "pY"], &["--tetgen"]),
+        (&points, &["--remesh-surface"], &["only points"]),
+    ] {
+        let out = ["-o", out.to_str().expect("text")];
+        assert_says(&run("tetrahedralize", &[input], &[&out, options].concat()), USAGE, words);
+    }
+}
+
+#[test]
+fn segments_and_markers_outlive_remeshing() {
+    let folder = folder();
+    let input = text(&folder, "c.smesh", &cube_smesh());
+    let out = folder.path().join("out.ele");
+    let report = &report(&input, &out, &["--remesh-surface", "--size", "0.3"])["report"];
+    assert!(report["mesh"]["faces"].as_u64() > Some(12), "{report}");
+    assert!(report["mesh"]["volume"].as_f64().is_some_and(|volume| volume > 0.0));
+}

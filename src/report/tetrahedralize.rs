@@ -8,7 +8,7 @@ use anastomesh_mesh::quality::{TetQuality, dihedral_range, volume6};
 use anastomesh_mesh::units::{counted, digits, grouped, tetrahedra};
 use anastomesh_mesh::{Bounds, face_key};
 use anastomesh_mesh::{TET_FACES, TetMesh};
-use anastomesh_tet::LayerSummary;
+use anastomesh_tet::{LayerSummary, RemeshSummary};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -244,6 +244,47 @@ impl LayerReport {
     }
 }
 
+/// Report of a remeshed surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RemeshReport {
+    /// Maximum allowed distance between input and new surface.
+    pub tolerance: f64,
+    /// Largest measured distance, in both directions.
+    pub distance: f64,
+    /// Number of triangles before and after.
+    pub triangles: [usize; 2],
+    /// Smallest angle of a triangle in degrees, before and after.
+    pub smallest_angle: [f64; 2],
+    /// First percentile of the smallest angles of triangles in degrees, before and after.
+    pub angle_percentile_1: [f64; 2],
+    /// Number of input triangles that stay, because new ones would intersect there.
+    pub kept: usize,
+}
+
+impl RemeshReport {
+    pub fn of(change: &RemeshSummary) -> Self {
+        Self {
+            tolerance: change.tolerance,
+            distance: change.distance,
+            triangles: change.triangles,
+            smallest_angle: change.smallest_angle,
+            angle_percentile_1: change.percentile_1,
+            kept: change.frozen,
+        }
+    }
+
+    fn text(&self) -> String {
+        let ([before, after], [least, now]) = (self.triangles.map(grouped), self.smallest_angle);
+        let angles = format!("smallest angle {least:.2}° to {now:.2}°");
+        let distance = format!("max distance {} (tolerance {})", digits(self.distance), digits(self.tolerance));
+        let kept = match self.kept {
+            0 => String::new(),
+            n => format!("; {} of the input kept, as new ones would intersect", counted(n, "triangle")),
+        };
+        row("remeshed", &format!("{before} to {after} triangles, {angles}, {distance}{kept}"))
+    }
+}
+
 /// Complete report of a tetrahedralization.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TetReport {
@@ -255,6 +296,9 @@ pub struct TetReport {
     pub mesh: OutputSize,
     /// Input elements that are not in the mesh.
     pub left_out: LeftOut,
+    /// Change of the surface by remeshing, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remeshed: Option<RemeshReport>,
     /// Quality of the tetrahedra.
     pub quality: Option<TetQuality>,
     /// Report of layers, if requested.
@@ -399,6 +443,7 @@ impl TetReport {
         for line in &self.repaired {
             let _ = writeln!(out, "  repaired: {line}");
         }
+        out.push_str(&self.remeshed.as_ref().map_or_else(String::new, RemeshReport::text));
         out.push_str(&self.left_out.text());
         let (tets, points) = (tetrahedra(m.tets), counted(m.points, "point"));
         let (added, volume) = (grouped(m.added_points), digits(m.volume));

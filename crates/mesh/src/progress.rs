@@ -35,6 +35,8 @@ pub enum Stage {
     Report,
     /// Checks a surface or a complex.
     Validate,
+    /// Remeshes a surface.
+    Remesh,
     /// Computes the Delaunay tetrahedralization of its points.
     Delaunay,
     /// Recovers missing edges and triangles.
@@ -67,6 +69,7 @@ impl Stage {
             Self::Write => "write",
             Self::Report => "report",
             Self::Validate => "validate",
+            Self::Remesh => "remesh",
             Self::Delaunay => "delaunay",
             Self::Recover => "recover",
             Self::Carve => "carve",

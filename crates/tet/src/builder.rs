@@ -10,10 +10,11 @@ use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
 use super::plc::LeftOut;
-use super::plc::{InputKind, PlcRef};
+use super::plc::{InputKind, InputPart, PlcRef};
 use super::progress::{Progress, Stage, Watch};
 use super::recover::RecoverySummary;
 use super::refine::RefineReport;
+use super::remesh::{RemeshSummary, Remeshed, Wanted, remesh};
 use super::request::Request;
 use super::{delaunay, input, sized};
 use anastomesh_mesh::geometry::Point3;
@@ -54,17 +55,18 @@ pub struct Tetrahedralizer {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Tetrahedralization {
-    /// The mesh. Its points begin with all points of the input, in their order and bit for bit, including unused ones.
+    /// The mesh. Its points begin with all points of the input, in their order and bit for bit, including unused ones. With
+    /// [`Boundary::Remesh`] they begin with the points of the remeshed surface.
     pub mesh: TetMesh,
     /// Region of each tetrahedron. Empty for a single region without an id from a seed.
     pub regions: Vec<i32>,
-    /// Input triangles in their order, or their pieces if they were split. Triangles of `summary.left_out` are omitted.
+    /// Input triangles in their order, or their pieces if they were split, or the triangles of the remeshed surface. Triangles of `summary.left_out` are omitted.
     /// Boundary triangles are oriented outwards; interior ones keep their orientation.
     pub faces: Vec<[u32; 3]>,
     /// Marker of each of `faces`; empty if the input has no markers.
     pub face_markers: Vec<i32>,
     /// Input triangle of each of `faces`, or the one that it is a piece of. In a plane facet whose edges were flipped, it is one
-    /// of the facet's triangles. Empty if each face is the input triangle of the same index, because none was split or left out.
+    /// of the facet's triangles. In a remeshed surface it is the input triangle close to its centroid. Empty if each face is the input triangle of the same index, because none was split or left out.
     pub origins: Vec<u32>,
     /// Layer of each tetrahedron, counted from 1 at the wall; 0 inside the layers. Empty in a mesh without layers.
     pub layers: Vec<i32>,
@@ -95,6 +97,8 @@ pub struct Summary {
     pub left_out: LeftOut,
     /// Result of the layers, if requested.
     pub layers: Option<LayerSummary>,
+    /// Change of the surface by remeshing, if requested.
+    pub remesh: Option<RemeshSummary>,
 }
 
 impl Default for Tetrahedralizer {
@@ -156,7 +160,7 @@ impl Tetrahedralizer {
         self
     }
 
-    /// Allows splitting of input triangles.
+    /// Allows splitting of input triangles, or remeshing of the surface.
     #[must_use]
     pub fn boundary(mut self, boundary: Boundary) -> Self {
         self.boundary = boundary;
@@ -280,6 +284,9 @@ impl Tetrahedralizer {
             sized::check(self.refinement.as_ref(), &self.sizing, surface.points.len())?;
             return self.run_split(plc);
         }
+        if let Boundary::Remesh { tolerance } = self.boundary {
+            return self.run_remeshed(plc, tolerance, watch);
+        }
         let request = Request {
             surface,
             edges: &edges,
@@ -337,11 +344,55 @@ impl Tetrahedralizer {
                 interior_faces: count(Place::Inside),
                 left_out: filled.left_out,
                 layers,
+                remesh: None,
             },
             mesh: filled.mesh,
             regions: filled.regions,
             layers: of_tets,
         })
+    }
+
+    /// Meshes a checked complex after remeshing its surface.
+    fn run_remeshed(&self, plc: PlcRef, tolerance: Option<f64>, watch: &Watch) -> Result<Tetrahedralization, TetError> {
+        sized::check(self.refinement.as_ref(), &self.sizing, plc.surface.points.len())?;
+        contacts::no_contacts(plc.surface, watch)?;
+        let max_volume = self.refinement.as_ref().and_then(|r| r.bounds.max_volume);
+        let (function, keep): (Option<sized::SizeFunction>, _) = match &self.sizing {
+            Sizing::Surface => (None, self.clone()),
+            Sizing::Constant(size) => {
+                let size = *size;
+                (Some(Arc::new(move |_: &Point3| size)), self.clone())
+            }
+            Sizing::Function(size) => (Some(Arc::clone(size)), self.clone()),
+            // The lengths at points of the input also apply to the new points.
+            Sizing::PerVertex(_) => {
+                let size: sized::SizeFunction = Arc::new(sized::size_function(plc.surface, &self.sizing, None));
+                (Some(Arc::clone(&size)), self.clone().sizing(Sizing::Function(size)))
+            }
+        };
+        let keep = keep.boundary(Boundary::Keep);
+        let wanted = Wanted {
+            tolerance,
+            size: function.as_deref().map(|size| size as &dyn Fn(&Point3) -> f64),
+            longest: max_volume.map_or(f64::INFINITY, sized::edge_of_volume),
+            most: self.max_tets,
+        };
+        let Remeshed { plc: new, origins, summary } = remesh(plc, &wanted, watch)?;
+        let origin = |&t: &u32| origins.get(t as usize).copied().unwrap_or(t);
+        let mut done = keep.run_watched((&new).into(), watch).map_err(|error| match error {
+            TetError::Outside { part: part @ InputPart::Triangles, ids, count } => {
+                TetError::Outside { part, ids: ids.iter().map(origin).collect(), count }
+            }
+            other => other,
+        })?;
+        done.origins =
+            if done.origins.is_empty() { origins.clone() } else { done.origins.iter().map(origin).collect() };
+        let left_out = &mut done.summary.left_out.triangles;
+        *left_out = left_out.iter().map(origin).collect();
+        left_out.sort_unstable();
+        left_out.dedup();
+        done.summary.remesh = Some(summary);
+        Ok(done)
     }
 
     /// Checks the requested layers, and their combination with other options.

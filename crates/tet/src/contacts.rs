@@ -41,6 +41,16 @@ pub(super) fn contacts(surface: &TriMesh) -> Vec<[u32; 2]> {
     found
 }
 
+/// Pairs of intersecting triangles, as [`contacts`].
+///
+/// # Errors
+/// [`TetError::Cancelled`], [`TetError::OverBudget`].
+pub(super) fn contacts_within(surface: &TriMesh, watch: &Watch) -> Result<Vec<[u32; 2]>, TetError> {
+    let mut found = Vec::new();
+    each_contact(surface, watch, |pair| found.push(pair))?;
+    Ok(found)
+}
+
 /// Calls `found` for each intersecting pair. Returns true if the search was complete.
 fn each_contact(surface: &TriMesh, watch: &Watch, mut found: impl FnMut([u32; 2])) -> Result<bool, TetError> {
     let (points, triangles) = (&surface.points, &surface.triangles);

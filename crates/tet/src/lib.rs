@@ -99,6 +99,7 @@ mod progress;
 mod recover;
 pub(crate) mod refine;
 mod regions;
+mod remesh;
 mod request;
 mod shells;
 mod sized;
@@ -122,6 +123,7 @@ pub use options::{Boundary, Interior, Refinement, Sizing};
 pub use plc::{InputKind, InputPart, LeftOut, Plc, PlcRef, Region};
 pub use recover::RecoverySummary;
 pub use refine::RefineReport;
+pub use remesh::RemeshSummary;
 pub use shells::{Ring, Shell, Shells};
 
 /// The example of the README is a test.

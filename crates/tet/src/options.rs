@@ -149,7 +149,7 @@ impl Refinement {
 }
 
 /// Treatment of the input triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Boundary {
     /// Each triangle is a face of the mesh.
     #[default]
@@ -158,6 +158,27 @@ pub enum Boundary {
     /// coplanar triangles with one marker may be flipped, too. Then each plane facet is a union of faces. Triangles count as
     /// coplanar within 1e-4 of their longest edge.
     Split,
+    /// The surface is remeshed with well-shaped triangles first, and the new triangles are faces of the mesh.
+    ///
+    /// Edge lengths are those of [`Sizing`], or those of the input, reduced at curvature and in thin parts. Kept are the topology,
+    /// edges at angles above 40°, corners, segments, and edges between markers. A surface that does not intersect itself
+    /// gives one that does not. Where that fails, the triangles of the input stay.
+    ///
+    /// ```
+    /// use anastomesh_tet::{Boundary, Tetrahedralizer};
+    ///
+    /// let surface = anastomesh_mesh::shapes::banded_sphere(20);
+    /// let made = Tetrahedralizer::new().boundary(Boundary::Remesh { tolerance: Some(0.01) }).run(&surface)?;
+    /// let change = made.summary.remesh.expect("remeshed");
+    /// assert!(change.distance <= 0.01 && change.smallest_angle[1] > 2.0 * change.smallest_angle[0]);
+    /// assert_eq!(made.origins.len(), made.faces.len());
+    /// # Ok::<(), anastomesh_tet::TetError>(())
+    /// ```
+    Remesh {
+        /// Maximum distance between the input and the new surface; `None`: 0.001 of the diagonal of the bounding box. The
+        /// distance is also at most 0.1 of the edge lengths.
+        tolerance: Option<f64>,
+    },
 }
 
 impl Boundary {

@@ -14,6 +14,10 @@ use super::request::Request;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Point3};
 use rustc_hash::FxHashSet;
+use std::sync::Arc;
+
+/// Edge length as a function of the position.
+pub(super) type SizeFunction = Arc<dyn Fn(&Point3) -> f64 + Send + Sync>;
 
 /// Clearance of interior points from the wall, relative to the edge length wanted there.
 const CLEARANCE: f64 = 0.45;

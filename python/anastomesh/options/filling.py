@@ -39,3 +39,7 @@ class FillingOptions(TypedDict, total=False):
         Sequence[str] | None, Option("Growth in regions, below that of growth, as '3=1.5'; one text for each region")
     ]
     split: Annotated[bool, Option("Triangles of the input may be split, as TetGen does without Y", False)]
+    remesh_surface: Annotated[
+        bool | float | None,
+        Option("Remesh the surface first, within this distance of the input; True: 0.001 of the diagonal of its box"),
+    ]

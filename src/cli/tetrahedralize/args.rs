@@ -4,12 +4,31 @@ use super::format::{InputFormat, StreamFormat};
 use super::seed;
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
-use crate::cli::numbers::{number, of_region};
+use crate::cli::numbers::{above_zero, number, of_region};
 use crate::cli::page::ReportArgs;
 use anastomesh_mesh::Point3;
 use anastomesh_tet::{Interior, Region, Tetrahedralizer};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+
+/// Options of `--remesh-surface`.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct RemeshArgs {
+    /// Maximum distance from the input; `None`: the default.
+    pub tolerance: Option<f64>,
+}
+
+impl RemeshArgs {
+    /// Value that stands for the default tolerance.
+    const DEFAULT: &str = "default";
+
+    fn parse(text: &str) -> Result<Self, String> {
+        if text == Self::DEFAULT {
+            return Ok(Self { tolerance: None });
+        }
+        Ok(Self { tolerance: Some(above_zero(text)?) })
+    }
+}
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -76,7 +95,21 @@ pub struct Args {
     /// Allow splitting of input triangles, as TetGen without -Y
     #[arg(long, conflicts_with = "tetgen")]
     pub split: bool,
-    /// Repair the input first: orient triangles, and merge exact duplicates
+    /// Remesh the surface within DIST (default: 0.001 of its diagonal)
+    ///
+    /// Edges above 40°, corners, edges between markers, and the topology stay. Edge lengths are those of --size or of the
+    /// input, and less at curvature.
+    #[arg(
+        long,
+        value_name = "DIST",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = RemeshArgs::DEFAULT,
+        conflicts_with_all = ["split", "tetgen", "check_only"],
+        value_parser = RemeshArgs::parse
+    )]
+    pub remesh_surface: Option<RemeshArgs>,
+    /// Repair the input first: orient triangles, merge exact duplicates
     #[arg(long)]
     pub repair: bool,
     /// Fail instead of ignoring input: facets and segments outside the filled region or in a hole, and bytes after the last

@@ -167,6 +167,15 @@ impl Input {
         });
     }
 
+    /// Takes over the segments of a remeshed surface. Returns true if attributes or markers of points are dropped, because the
+    /// points are others.
+    pub fn take_remeshed(&mut self, segments: &[[u32; 2]]) -> bool {
+        self.plc.segments = segments.to_vec();
+        let had = self.attribute_count > 0 || !self.point_markers.is_empty();
+        (self.attribute_count, self.point_attributes, self.point_markers) = (0, Vec::new(), Vec::new());
+        had
+    }
+
     fn of_file(path: &Path, format: InputFormat) -> Result<Source, Failure> {
         let failed = |e: &dyn std::error::Error| Failure::input(e.to_string());
         if let Some(surface) = format.surface() {

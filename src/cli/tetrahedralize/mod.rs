@@ -27,7 +27,8 @@ use super::stop::Stop;
 use crate::report::page::{self, Mark, Section};
 use crate::report::rows::row;
 use crate::report::tetrahedralize::{
-    BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, SizeUnmet, TetReport, region_sizes, volume_of,
+    BoundResult, InputSize, LayerReport, LeftOut, OutputSize, Recovery, RemeshReport, SizeUnmet, TetReport,
+    region_sizes, volume_of,
 };
 use crate::report::verdict::Verdict;
 use anastomesh_mesh::VolumeMesh;
@@ -71,6 +72,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let pool = common::thread_pool(args.common.threads)?;
     let watch = Arc::new(Watch::new(plan.quiet, args.common.progress));
     let mut input = watch.time("read", || read(args, format, &plan))?;
+    if plan.remesh_surface.is_some() && input.only_points {
+        return Err(Failure::usage("--remesh-surface needs triangles, and the input has only points"));
+    }
     input.limit_regions(&plan)?;
     target.as_ref().map_or(Ok(()), |target| target.ensure_apart(&input.files))?;
     let layers_on = input.markers_of(&args.layers_on)?;
@@ -98,6 +102,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             log::warning(&format!("{from}: region point {seed} lies in the region of point {earlier}: ignored"));
         }
         fill_report(&mut report, &made, &input, &plan, args);
+        if let Some(change) = &made.summary.remesh
+            && input.take_remeshed(&change.segments)
+            && !plan.quiet
+        {
+            log::warning(&format!("{from}: attributes and markers of points dropped: remeshing makes other points"));
+        }
         input.leave_out(&made.summary.left_out.segments);
         let layers = std::mem::take(&mut made.layers);
         let volume = output::volume(made, &input);
@@ -189,7 +199,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     let mesh = &made.mesh;
     report.mesh = OutputSize {
         points: mesh.points.len(),
-        added_points: mesh.points.len().saturating_sub(input.plc.surface.points.len()),
+        added_points: mesh.points.len().saturating_sub(surface_points(made, input)),
         tets: mesh.tets.len(),
         faces: made.faces.len(),
         interior_faces: made.summary.interior_faces,
@@ -197,11 +207,14 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
     report.left_out = left_out(made, input);
     report.quality = Some(TetQuality::of(mesh));
-    let of_layers = |layers| LayerReport::of(layers, mesh, |v| input.numbers.point(v));
+    let is_remeshed = made.summary.remesh.is_some();
+    let number = |v: u32| if is_remeshed { v.saturating_add(input.numbers.first) } else { input.numbers.point(v) };
+    let of_layers = |layers| LayerReport::of(layers, mesh, number);
+    report.remeshed = made.summary.remesh.as_ref().map(RemeshReport::of);
     report.layers = made.summary.layers.as_ref().map(of_layers);
     if !input.only_points {
         report.bounds = BoundResult::of(&plan.bounds, mesh, &made.faces);
-        let plc = Some(&input.plc).filter(|_| !plan.split);
+        let plc = Some(&input.plc).filter(|_| plan.keeps_triangles());
         let unmet = |size| {
             plc.and_then(|plc| {
                 SizeUnmet::of(size, Boundary::LONGER, &plc.surface.points, &plc.surface.triangles, &plc.segments)
@@ -209,7 +222,7 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
         };
         report.size_unmet = plan.size.and_then(unmet);
         let how = if args.tetgen.is_some() { "leaving out Y" } else { "--split" };
-        report.to_split = (!plan.split).then_some(how);
+        report.to_split = plan.keeps_triangles().then_some(how);
     }
     report.regions = region_sizes(mesh, &made.regions);
     let recovery = &made.summary.recovery;
@@ -220,13 +233,18 @@ fn fill_report(report: &mut TetReport, made: &Tetrahedralization, input: &Input,
     };
 }
 
+/// Number of points of the surface that was filled.
+fn surface_points(made: &Tetrahedralization, input: &Input) -> usize {
+    made.summary.remesh.as_ref().map_or(input.plc.surface.points.len(), |change| change.points)
+}
+
 /// Input elements that the mesh does not have, numbered as in the file.
 fn left_out(made: &Tetrahedralization, input: &Input) -> LeftOut {
     let LeftOutIds { triangles, segments, .. } = &made.summary.left_out;
     let mut faces: Vec<u32> = triangles.iter().map(|&t| input.numbers.triangle(t)).collect();
     faces.dedup();
     let ends = segments.iter().filter_map(|&s| input.plc.segments.get(s as usize));
-    let mut used = vec![false; input.plc.surface.points.len()];
+    let mut used = vec![false; surface_points(made, input)];
     for &v in made.mesh.tets.iter().flatten() {
         if let Some(used) = used.get_mut(v as usize) {
             *used = true;

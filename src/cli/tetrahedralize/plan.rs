@@ -1,6 +1,6 @@
 //! Resolved options: flags or `TetGen` switches as one plan.
 
-use super::args::Args;
+use super::args::{Args, RemeshArgs};
 use super::format::{InputFormat, Target};
 use super::switches::Switches;
 use crate::cli::exit::Failure;
@@ -35,6 +35,9 @@ pub struct TetPlan {
     pub max_tets: usize,
     /// True if input triangles may be split.
     pub split: bool,
+    /// Remeshing of the surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remesh_surface: Option<RemeshArgs>,
     /// Layers along the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<Layers>,
@@ -133,6 +136,7 @@ impl TetPlan {
             region_growths: Vec::new(),
             max_tets: Tetrahedralizer::MAX_TETS,
             split: args.split,
+            remesh_surface: args.remesh_surface,
             layers: None,
             layers_on: Vec::new(),
             layers_in: Vec::new(),
@@ -164,6 +168,7 @@ impl TetPlan {
             region_growths: Vec::new(),
             max_tets: Tetrahedralizer::MAX_TETS,
             split: !s.keep_boundary,
+            remesh_surface: None,
             layers: None,
             layers_on: Vec::new(),
             layers_in: Vec::new(),
@@ -192,6 +197,20 @@ impl TetPlan {
         }
     }
 
+    /// Treatment of the input triangles.
+    fn boundary(&self) -> Boundary {
+        match self.remesh_surface {
+            Some(RemeshArgs { tolerance }) => Boundary::Remesh { tolerance },
+            None if self.split => Boundary::Split,
+            None => Boundary::Keep,
+        }
+    }
+
+    /// True if input triangles stay faces of the mesh.
+    pub fn keeps_triangles(&self) -> bool {
+        self.boundary() == Boundary::Keep
+    }
+
     /// Tetrahedralizer for an input with these regions.
     pub fn tetrahedralizer(&self, regions: &[Region]) -> Tetrahedralizer {
         let refinement = Refinement::default().bounds(self.bounds);
@@ -201,14 +220,14 @@ impl TetPlan {
             None => Interior::Lattice { cell: self.size.map(|size| LATTICE_CELL * size), clearance: None },
         };
         // A size of a uniform lattice needs no further field.
-        let sized = self.growth.is_some() || self.split || self.bounds != Bounds::default();
+        let sized = self.growth.is_some() || self.boundary() != Boundary::Keep || self.bounds != Bounds::default();
         let bounded = self.bounds != Bounds::default() || regions.iter().any(|region| region.max_volume.is_some());
         Tetrahedralizer::new()
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
             .interior(interior)
             .refine(bounded.then_some(refinement))
             .sizing(self.size.filter(|_| sized).map_or(Sizing::Surface, Sizing::Constant))
-            .boundary(if self.split { Boundary::Split } else { Boundary::Keep })
+            .boundary(self.boundary())
             .layers(self.layers)
             .layers_in(self.layers_in.as_slice())
             .optimize(self.optimize)
