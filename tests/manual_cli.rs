@@ -16,7 +16,8 @@ fn verbs() -> Vec<String> {
 fn options(verb: &str) -> Vec<String> {
     let help = stdout(&run(verb, &[], &["--help"]));
     let words = help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(|line| line.split([' ', ',']));
-    words.filter_map(|word| word.strip_prefix("--")).map(str::to_owned).filter(|word| !word.is_empty()).collect()
+    let names = words.filter_map(|word| word.strip_prefix("--")?.split('[').next());
+    names.map(str::to_owned).filter(|word| !word.is_empty()).collect()
 }
 
 #[test]
