@@ -92,7 +92,10 @@ fn name(arg: &Arg) -> String {
     let value = value.or_else(|| takes.then(|| format!("<{}>", arg.get_id().as_str().to_uppercase())));
     let words = [arg.get_short().map(|c| format!("-{c}")), arg.get_long().map(|long| format!("--{long}"))];
     let names = words.into_iter().flatten().collect::<Vec<_>>().join(", ");
-    format!("`{}`", format!("{names} {}", value.unwrap_or_default()).trim()).replace('|', "\\|")
+    // A value after `=` may be left out.
+    let form = |value| if arg.is_require_equals_set() { format!("[={value}]") } else { format!(" {value}") };
+    let value = value.map(form).unwrap_or_default();
+    format!("`{}`", format!("{names}{value}").trim()).replace('|', "\\|")
 }
 
 fn default(arg: &Arg) -> String {

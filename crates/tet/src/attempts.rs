@@ -26,17 +26,30 @@ const PLANE_SHARE: u64 = 2;
 /// Exchanges in planes then take less time than cavities for each edge.
 const MANY: f64 = 0.5;
 
-/// Maximum rounds over all strategies.
-const MAX_ROUNDS: u32 = 7;
+/// Maximum turns of a start.
+const MAX_TURNS: u32 = 8;
 
-/// Growth of the operations from round to round.
+/// Growth of the operations from turn to turn.
 const GROWTH: u64 = 4;
 
-/// Budgets relative to those of the round. The later ones follow at once if few parts are left, and while each helps.
-const FURTHER: [u64; 3] = [1, 4, 16];
+/// Turns after which a start returns to the complex left by flips. Parts that are recovered may be in the way of others.
+const RETURN_AFTER: u32 = 3;
+
+/// Operations of each earlier start before a start begins, relative to the first turn of one strategy. The second number
+/// holds after the first [`EARLY`] starts, which succeed most often.
+const DELAY: (u64, u64) = (1, 4);
+
+/// Number of starts that succeed most often.
+const EARLY: u64 = 4;
+
+/// Divisors of the operations of a start in the choice of the next turn: if few parts are left, and if half of them.
+const PROMISE: (u64, u64) = (4, 2);
 
 /// Maximum parts that count as few: a constant, or this fraction of the parts that flips left.
 const FEW: (usize, f64) = (8, 0.05);
+
+/// Fraction of the parts that flips left, from which a start counts as promising.
+const HALF: f64 = 0.5;
 
 /// Strategies are not repeated if they leave more than this fraction of the parts.
 const STALLED: f64 = 0.9;
@@ -76,6 +89,11 @@ struct Attempt<'a> {
     filled: bool,
     /// True if strategies have helped little.
     abandoned: bool,
+    /// Operations of other starts before this one begins.
+    delay: u64,
+    /// Turns and operations so far.
+    turns: u32,
+    spent: u64,
     /// Repetitions with the failed parts first.
     restarts: u32,
     /// Parts that this start has left before.
@@ -148,21 +166,23 @@ pub(super) fn recover_rest(
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
     let whole = MAX_OPERATIONS.0 * r.surface.triangles.len() as u64 + MAX_OPERATIONS.1;
     let mut effort = Effort { left: whole, last };
-    for round in 0..MAX_ROUNDS {
-        for attempt in &mut attempts {
-            // Parts that are recovered may be in the way of others.
-            if round > 0 && round % 2 == 0 {
-                attempt.reset(r);
-            }
-            if let Some(done) = attempt.escalate(r, points, GROWTH.pow(round), &mut effort)? {
-                return Ok(done);
-            }
-            if effort.left == 0 {
-                return Err(effort.last);
-            }
+    let first = operations(r, edges.len() + missing.triangles.len());
+    for (place, attempt) in (0..).zip(&mut attempts) {
+        attempt.delay = place * first * if place < EARLY { DELAY.0 } else { DELAY.1 };
+    }
+    while effort.left > 0 {
+        let open = attempts.iter_mut().filter(|attempt| attempt.turns < MAX_TURNS);
+        let Some(next) = open.min_by_key(|attempt| attempt.claim(r, first)) else { break };
+        if let Some(done) = next.turn(r, points, &mut effort)? {
+            return Ok(done);
         }
     }
     Err(effort.last)
+}
+
+/// Operations of a strategy in the first turn.
+fn operations(r: &Request, missing: usize) -> u64 {
+    OPERATIONS.0 * missing as u64 + MAX_CONSTANT.min(OPERATIONS.1 * r.surface.triangles.len() as u64)
 }
 
 /// True if flips have left more flat tetrahedra than edges, a sign of flat surface parts.
@@ -201,6 +221,9 @@ impl<'a> Attempt<'a> {
             passes: None,
             filled: false,
             abandoned: false,
+            delay: 0,
+            turns: 0,
+            spent: 0,
             restarts: 0,
             failed: Priority::default(),
             origin: None,
@@ -235,32 +258,31 @@ impl<'a> Attempt<'a> {
         self.missing() <= constant.max(share as usize)
     }
 
-    /// Tries all strategies with `share` times the operations of the first round. If few parts are left, larger budgets
-    /// follow at once.
-    fn escalate(
-        &mut self,
-        r: &Request<'a>,
-        points: &[Point3],
-        share: u64,
-        effort: &mut Effort,
-    ) -> Result<Option<Recovered>, TetError> {
-        let mut before = usize::MAX;
-        for further in FURTHER {
-            let done = self.repeat(r, points, share * further, effort)?;
-            if done.is_some() || effort.left == 0 || !self.leaves(FEW) || self.has_stalled(before) {
-                return Ok(done);
-            }
-            if further >= RESTART_FROM
-                && let Some(done) = self.restart(r, points, share * further, effort)?
-            {
-                return Ok(Some(done));
-            }
-            before = self.missing();
-        }
-        Ok(None)
+    /// Operations that count in the choice of the next turn: those so far and those of one strategy in the next turn.
+    /// `first` are those of the first turn, while the number of missing parts is unknown.
+    fn claim(&self, r: &Request, first: u64) -> u64 {
+        let known = self.recovery.as_ref().map(|recovery| operations(r, recovery.missing()));
+        let all = self.spent + GROWTH.pow(self.turns) * known.unwrap_or(first);
+        let promise = if self.leaves(FEW) { PROMISE.0 } else { PROMISE.1 };
+        self.delay + if self.leaves((FEW.0, HALF)) { all / promise } else { all }
     }
 
-    /// Repeats a nearly successful start. What it left comes first, while nothing is in the way.
+    /// Tries all strategies with larger budgets than in the last turn.
+    fn turn(&mut self, r: &Request<'a>, points: &[Point3], effort: &mut Effort) -> Result<Option<Recovered>, TetError> {
+        let (before, share) = (effort.left, GROWTH.pow(self.turns));
+        if self.turns > 0 && self.turns.is_multiple_of(RETURN_AFTER) {
+            self.reset(r);
+        }
+        let mut done = self.repeat(r, points, share, effort)?;
+        if done.is_none() && share >= RESTART_FROM {
+            done = self.restart(r, points, share, effort)?;
+        }
+        self.turns += 1;
+        self.spent += before - effort.left;
+        Ok(done)
+    }
+
+    /// Repeats a nearly successful start, while that helps. What it left comes first, while nothing is in the way.
     fn restart(
         &mut self,
         r: &Request<'a>,
@@ -268,23 +290,22 @@ impl<'a> Attempt<'a> {
         share: u64,
         effort: &mut Effort,
     ) -> Result<Option<Recovered>, TetError> {
-        while self.restarts < MAX_RESTARTS && self.leaves(FEWER) && effort.left > 0 {
-            self.restarts += 1;
-            let Some(recovery) = &self.recovery else { break };
-            let mut failed = self.failed.clone();
-            failed.add(recovery.missing_parts());
-            let Self { flat, ways, passes, filled, restarts, .. } = *self;
-            let mut again = Self { passes, filled, restarts, failed, ..Self::fresh(flat, ways) };
-            let done = again.repeat(r, points, share, effort)?;
-            if done.is_some() {
-                return Ok(done);
-            }
-            if again.missing() >= self.missing() {
-                break;
-            }
-            *self = again;
+        let Some(recovery) = &self.recovery else { return Ok(None) };
+        if self.restarts == MAX_RESTARTS || !self.leaves(FEWER) || effort.left == 0 {
+            return Ok(None);
         }
-        Ok(None)
+        self.restarts += 1;
+        let mut failed = self.failed.clone();
+        failed.add(recovery.missing_parts());
+        let Self { flat, ways, passes, filled, delay, turns, spent, restarts, .. } = *self;
+        let mut again = Self { passes, filled, delay, turns, spent, restarts, failed, ..Self::fresh(flat, ways) };
+        let done = again.repeat(r, points, share, effort)?;
+        if done.is_none() && again.missing() < self.missing() {
+            *self = again;
+        } else {
+            self.restarts = MAX_RESTARTS;
+        }
+        Ok(done)
     }
 
     /// Repeats all strategies while they recover enough.
@@ -323,8 +344,7 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let constant = MAX_CONSTANT.min(OPERATIONS.1 * r.surface.triangles.len() as u64);
-            let budget = Budget::new(share * (OPERATIONS.0 * recovery.missing() as u64 + constant));
+            let budget = Budget::new(share * operations(r, recovery.missing()));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
             effort.left = effort.left.saturating_sub(budget.spent());
@@ -359,7 +379,7 @@ impl<'a> Attempt<'a> {
     /// Repeats the flips and Steiner points for the parts that a strategy left. Less is in their way than before.
     fn flip_again(&mut self, r: &Request<'a>) -> Result<Option<Recovered>, TetError> {
         let Some(recovery) = self.recovery.take() else { return Ok(None) };
-        let (mut complex, made) = recovery.into_complex();
+        let (mut complex, made, too_long) = recovery.into_complex();
         self.summary.steiner_points += made;
         let rule = self.flat.map_or(Rule::Positive, Rule::Thick);
         let before = complex.points.len();
@@ -370,7 +390,8 @@ impl<'a> Attempt<'a> {
             Err(TetError::NotRecovered { edges, triangles }) => {
                 let missing = Missing { edges: &edges, triangles: &triangles };
                 let flat = self.flat.unwrap_or(flat_height(&r.surface.points));
-                self.recovery = Some(ExactRecovery::new(complex, (r.surface, r.edges), missing, flat));
+                let recovery = ExactRecovery::new(complex, (r.surface, r.edges), missing, flat);
+                self.recovery = Some(recovery.after(too_long));
                 Ok(None)
             }
             Err(error) => Err(error),
@@ -393,17 +414,8 @@ impl<'a> Attempt<'a> {
             Err(TetError::NotRecovered { edges, triangles }) => {
                 let missing = Missing { edges: &edges, triangles: &triangles };
                 let flat = self.flat.unwrap_or(flat_height(&r.surface.points));
-                let Self { ways, flat: own, passes, filled, restarts, .. } = *self;
-                let failed = std::mem::take(&mut self.failed);
-                *self = Self {
-                    ways,
-                    flat: own,
-                    passes,
-                    filled,
-                    restarts,
-                    failed,
-                    ..Self::given(r, given, complex, missing, flat)
-                };
+                let start = Self::given(r, given, complex, missing, flat);
+                (self.recovery, self.summary, self.origin) = (start.recovery, start.summary, start.origin);
                 Ok(None)
             }
             Err(error) => Err(error),

@@ -67,7 +67,7 @@ fn a_pipe_is_recovered_among_points_on_both_sides() {
     points.extend(box_corners(&surface.points));
     with_request(&surface, |r| {
         let mut attempt = Attempt { filled: true, ..Attempt::fresh(None, &RecoveryStrategy::GIVEN) };
-        let (mut c, _) = attempt.escalate(r, &points, 1, &mut effort(u64::MAX)).unwrap().unwrap();
+        let (mut c, _) = attempt.turn(r, &points, &mut effort(u64::MAX)).unwrap().unwrap();
         c.sanity_check().unwrap();
         assert_eq!(survey(&mut c, &surface, r.edges), (Vec::new(), Vec::new()));
     });
@@ -81,5 +81,24 @@ fn the_scaffold_surrounds_the_surface_and_repeats_no_point() {
         let radius = |p: &Point3| p.coords.norm();
         assert!(first.iter().any(|p| radius(p) < 0.9) && first.iter().any(|p| radius(p) > 1.05));
         assert_eq!(sized::scaffold_points(r, &first).unwrap(), Vec::new());
+    });
+}
+
+#[test]
+fn starts_take_turns_by_the_operations_spent() {
+    with_request(&sphere_surface(1), |r| {
+        let points = r.surface.points.clone();
+        let once = operations(r, 1);
+        let start = |spent, delay| {
+            let complex = delaunay::delaunay_watched(&points, r.watch).unwrap();
+            let missing = Missing { edges: &[], triangles: &[0] };
+            Attempt { spent, delay, ..Attempt::given(r, points.len(), complex, missing, 0.0) }
+        };
+        // Few parts are left, so a quarter of the operations counts.
+        assert_eq!(start(3 * once, 5).claim(r, once), 5 + once);
+        let fresh = |delay| Attempt { delay, ..Attempt::fresh(None, &RecoveryStrategy::GIVEN) };
+        assert_eq!(fresh(7).claim(r, once), 7 + once);
+        let later = Attempt { turns: 2, ..fresh(0) };
+        assert_eq!(later.claim(r, once), GROWTH * GROWTH * once);
     });
 }

@@ -4,7 +4,9 @@
 
 use super::segments::Segments;
 use super::space::Space;
+use super::ways::operations;
 use crate::error::{Obstacle, Stuck, TetError};
+use crate::progress::Watch;
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle};
 use rustc_hash::FxHashSet;
 
@@ -19,11 +21,11 @@ pub(super) struct Cover {
     pub inner: Vec<u32>,
 }
 
-/// Turns a missing triangle, whose sides exist as edges or chains, into a union of frozen faces.
-pub(super) fn cover(s: &mut Space, segments: &Segments, triangle: [u32; 3]) -> Result<Cover, TetError> {
+/// Turns a missing triangle, whose sides exist as edges or chains, into a union of frozen faces. Counts the work.
+pub(super) fn cover(s: &mut Space, segments: &Segments, triangle: [u32; 3], watch: &Watch) -> Result<Cover, TetError> {
     let edges = segments.outline(triangle);
     let open = edges.iter().copied().collect();
-    Front { s, segments, triangle, edges, open }.cover()
+    Front { s, segments, triangle, edges, open }.cover(watch)
 }
 
 fn stuck(triangle: [u32; 3], reason: Stuck) -> TetError {
@@ -49,7 +51,7 @@ struct Front<'a> {
 }
 
 impl Front<'_> {
-    fn cover(&mut self) -> Result<Cover, TetError> {
+    fn cover(&mut self, watch: &Watch) -> Result<Cover, TetError> {
         let intersection = stuck(self.triangle, Stuck::Intersection);
         let mut known: FxHashSet<u32> = self.edges.iter().map(|e| e[0]).collect();
         let mut cover = Cover { pieces: Vec::new(), inner: Vec::new() };
@@ -57,6 +59,7 @@ impl Front<'_> {
             if !self.open.contains(&[a, b]) {
                 continue;
             }
+            watch.spend(operations(self.s))?;
             let apex = match self.behind([a, b]).ok_or_else(|| intersection.clone())? {
                 Behind::Face(v) => v,
                 Behind::Edge(edge) => self.pierce(edge)?,

@@ -50,6 +50,8 @@ pub(crate) struct ExactRecovery<'a> {
     edges: &'a SurfaceEdges,
     start: State<'a>,
     level: Leveled<'a>,
+    /// Last recovery in planes that took too long.
+    too_long: Option<TooLong>,
     /// Strategies that have recovered nothing in the present state, with the largest budget of each.
     futile: Vec<(RecoveryStrategy, u64)>,
 }
@@ -60,10 +62,18 @@ enum Leveled<'a> {
     Unknown,
     /// Too many edges would remain.
     Useless,
-    /// It takes more operations than with this share of the budget.
-    TooLong(u64),
     Done(Box<State<'a>>),
 }
+
+/// Recovery in planes that took too long. It is repeated with a larger budget, or once many more parts are recovered.
+#[derive(Clone, Copy)]
+pub(crate) struct TooLong {
+    share: u64,
+    missing: usize,
+}
+
+/// Maximum missing parts, relative to those of a recovery in planes that took too long, for its repetition.
+const REPEAT_BELOW: f64 = 0.5;
 
 impl<'a> ExactRecovery<'a> {
     /// Recovery that starts with `c`. `flat` is the thickness below which a part counts as flat in the choice between
@@ -77,7 +87,7 @@ impl<'a> ExactRecovery<'a> {
         let segments = Segments::new(edges, surface.points.len());
         let push = Push::new(Space::new(c, flat), segments, surface.triangles.clone());
         let start = State { push, edges: missing.edges.to_vec(), triangles: missing.triangles.to_vec(), made: 0 };
-        Self { surface, edges, start, level: Leveled::Unknown, futile: Vec::new() }
+        Self { surface, edges, start, level: Leveled::Unknown, too_long: None, futile: Vec::new() }
     }
 
     /// Number of missing edges and triangles.
@@ -90,9 +100,20 @@ impl<'a> ExactRecovery<'a> {
         Missing { edges: &self.start.edges, triangles: &self.start.triangles }
     }
 
-    /// Complex with the parts recovered so far, and the number of Steiner points made.
-    pub(crate) fn into_complex(self) -> (Complex, usize) {
-        (self.start.push.s.c, self.start.made)
+    /// Complex with the parts recovered so far, the number of Steiner points made, and what took too long.
+    pub(crate) fn into_complex(self) -> (Complex, usize, Option<TooLong>) {
+        (self.start.push.s.c, self.start.made, self.too_long)
+    }
+
+    /// Recovery that continues after flips.
+    pub(crate) fn after(self, too_long: Option<TooLong>) -> Self {
+        Self { too_long, ..self }
+    }
+
+    /// True if recovery in planes would take too long again.
+    fn is_too_long(&self, share: u64) -> bool {
+        let alike = |last: TooLong| self.missing() as f64 > REPEAT_BELOW * last.missing as f64;
+        self.too_long.is_some_and(|last| share <= last.share && alike(last))
     }
 
     /// True if a strategy cannot recover anything, as an earlier attempt has shown. It would repeat the same work.
@@ -120,15 +141,14 @@ impl<'a> ExactRecovery<'a> {
         }
         if let Some(part) = way.level {
             let known = match self.level {
-                Leveled::Unknown => false,
+                Leveled::Unknown => self.is_too_long(share),
                 Leveled::Useless => part.is_finite(),
-                Leveled::TooLong(tried) => share <= tried,
                 Leveled::Done(_) => true,
             };
             if !known {
                 let leveled = self.start.leveled(self.edges, part, watch);
                 if matches!(leveled, Err(TetError::OverBudget { .. })) {
-                    self.level = Leveled::TooLong(share);
+                    self.too_long = Some(TooLong { share, missing: self.missing() });
                 }
                 self.level = leveled?.map_or(Leveled::Useless, |state| Leveled::Done(Box::new(state)));
             }

@@ -69,24 +69,24 @@ pub(super) fn recover_part(
     edges.sort_by_key(|&[a, b]| (hash(salt ^ (u64::from(a) << 32 | u64::from(b))), a, b));
     for &ends in &edges {
         spend(push, Obstacle::Edge(ends))?;
-        let id = push.segments.cut(&mut push.s, ends)?;
+        let id = push.segments.cut(&mut push.s, ends, watch)?;
         summary.on_segments += push.add_segment(id);
     }
     let beside = push.segments.list.len() as u32;
     for &ends in &helpers.edges {
         spend(push, Obstacle::Edge(ends))?;
-        push.segments.cut(&mut push.s, ends)?;
+        push.segments.cut(&mut push.s, ends, watch)?;
     }
     #[cfg(test)]
     push.s.check();
     for &t in &part.triangles {
         spend(push, Obstacle::Triangle(push.triangles[t as usize]))?;
-        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize], watch)?;
         summary.on_facets += push.add_facet(t, cover);
     }
     let mut inner = Vec::new();
     for &t in &helpers.triangles {
-        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize])?;
+        let cover = cover(&mut push.s, &push.segments, push.triangles[t as usize], watch)?;
         inner.extend(push.add_helper(t, cover));
     }
     #[cfg(test)]

@@ -4,8 +4,10 @@
 use super::dig::{Dig, Dug};
 use super::parts::sorted;
 use super::space::Space;
+use super::ways::operations;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::input::SurfaceEdges;
+use crate::progress::Watch;
 use crate::star::EdgeRing;
 use anastomesh_mesh::geometry::implicit::OnTriangle;
 use rustc_hash::FxHashMap;
@@ -102,13 +104,14 @@ impl<'a> Segments<'a> {
         edges
     }
 
-    /// Turns a missing edge into a chain. Returns its index in the list.
-    pub(super) fn cut(&mut self, s: &mut Space, ends: [u32; 2]) -> Result<u32, TetError> {
+    /// Turns a missing edge into a chain, and counts the work. Returns its index in the list.
+    pub(super) fn cut(&mut self, s: &mut Space, ends: [u32; 2], watch: &Watch) -> Result<u32, TetError> {
         let id = self.list.len() as u32;
         self.by_ends.insert(sorted(ends[0], ends[1]), id);
         self.list.push(Segment { ends, chain: vec![ends[0]] });
         let mut at = ends[0];
         while at != ends[1] {
+            watch.spend(operations(s))?;
             let next = self.step(s, at, ends)?.unwrap_or(ends[1]);
             // Register now, so that later steps do not remove the piece.
             self.pieces.insert(sorted(at, next), id);

@@ -182,7 +182,7 @@ fn what_is_recovered_before_a_budget_ends_is_kept() {
         let error = recovery.attempt(way, 100, &Watch::NOBODY.within(&budget)).unwrap_err();
         assert!(matches!(error, TetError::OverBudget { .. }), "{error}");
         missing.push(recovery.missing());
-        let (mut complex, _) = recovery.into_complex();
+        let (mut complex, ..) = recovery.into_complex();
         complex.sanity_check().unwrap();
         let (edges, triangles) = survey(&mut complex, &surface, &edges);
         assert_eq!(missing.last(), Some(&(edges.len() + triangles.len())));
