@@ -92,7 +92,7 @@ fn starts_take_turns_by_the_operations_spent() {
         let start = |spent, delay| {
             let complex = delaunay::delaunay_watched(&points, r.watch).unwrap();
             let missing = Missing { edges: &[], triangles: &[0] };
-            Attempt { spent, delay, ..Attempt::given(r, points.len(), complex, missing, 0.0) }
+            Attempt { delay, spent, ..Attempt::given(r, points.len(), complex, missing, 0.0) }
         };
         // Few parts are left, so a quarter of the operations counts.
         assert_eq!(start(3 * once, 5).claim(r, once), 5 + once);
