@@ -7,7 +7,7 @@ use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
     Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
-    graded_points, limit_by_gaps, refine_complex, surrounding_points,
+    graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -40,6 +40,9 @@ const SCAFFOLD_POINTS: f64 = 20.0;
 
 /// Height of the regular tetrahedron, in edge lengths.
 const REGULAR_HEIGHT: f64 = 0.816;
+
+/// Tetrahedra with selected points of a lattice, relative to those with all points.
+const SELECTED: f64 = 0.5;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
@@ -147,14 +150,21 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
         _ => return Ok(None),
     };
     let wall = wall(r);
-    let Some(tree) = size_tree(&wall, r.sizing, longest, &tree_options(r.interior, r.sizing)) else {
+    let options = TreeOptions { is_fine: r.spaced, ..tree_options(r.interior, r.sizing) };
+    let Some(tree) = size_tree(&wall, r.sizing, longest, &options) else {
         return Ok(None);
     };
+    let grading = tree.grading().filter(|_| r.spaced);
     if let Some(limit) = r.max_tets {
-        let estimate = estimate_tets(&tree, &wall);
+        let share = if grading.is_some() { SELECTED } else { 1.0 };
+        let estimate = share * estimate_tets(&tree, &wall);
         within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
     }
-    Ok(Some(graded_points(&tree, &wall, r.watch)?))
+    let points = graded_points(&tree, &wall, r.watch)?;
+    Ok(Some(match grading {
+        Some(grading) => spaced_points(&points, &wall, grading),
+        None => points,
+    }))
 }
 
 /// Points on both sides of a surface, none of which is in `others`. They grow apart with the distance from the surface.
