@@ -73,6 +73,9 @@ impl Domain {
             None => None,
         };
         let (mesh, regions) = assemble(lumen, &layout, tissue.as_ref(), plan);
+        // The check needs about as much memory as they do.
+        drop(layout);
+        drop((tissue, shells, surface, around));
         progress.at(Stage::Check, 0, 0);
         let check = check_regions(&mesh, &regions, Some(expectation));
         Ok(Self { mesh, regions, shells: report, check })

@@ -25,6 +25,9 @@ const CLEARANCE: f64 = 0.45;
 /// Clearance of the points of [`Interior::Growing`], relative to the edge length of the wall.
 const GROWING_CLEARANCE: f64 = 0.5;
 
+/// As [`GROWING_CLEARANCE`], for selected points. Distances between them are longer, too.
+const SPACED_CLEARANCE: f64 = 0.6;
+
 /// Radius-edge ratio above which tetrahedra are split if no bounds are given, where the wall allows. Without it, the mean
 /// radius ratio falls below TetGen's on thin surfaces.
 const GROWING_RATIO: f64 = 1.4;
@@ -123,7 +126,12 @@ fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeO
 /// Wall of a run, with sizes as its interior asks.
 fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
     let growing = matches!(r.interior, Interior::Growing { .. });
-    let mut wall = wall_of(r, if growing { GROWING_CLEARANCE } else { CLEARANCE });
+    let clearance = match r.spaced {
+        _ if !growing => CLEARANCE,
+        true => SPACED_CLEARANCE,
+        false => GROWING_CLEARANCE,
+    };
+    let mut wall = wall_of(r, clearance);
     if growing {
         limit_by_gaps(&mut wall);
     }
@@ -162,7 +170,7 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
     }
     let points = graded_points(&tree, &wall, r.watch)?;
     Ok(Some(match grading {
-        Some(grading) => spaced_points(&points, &wall, grading),
+        Some(grading) => spaced_points(&points, grading),
         None => points,
     }))
 }

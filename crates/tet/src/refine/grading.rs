@@ -37,8 +37,10 @@ struct GradingNode {
 impl GradingNode {
     /// Lower bound of the lengths at a place.
     fn bound(&self, p: &Point3, slope: f64) -> f64 {
-        let nearest = p.sup(&self.aabb.min).inf(&self.aabb.max);
-        self.least + slope * (p - nearest).norm()
+        let Aabb { min, max } = &self.aabb;
+        let beside = |p: f64, min: f64, max: f64| (min - p).max(p - max).max(0.0);
+        let (x, y, z) = (beside(p.x, min.x, max.x), beside(p.y, min.y, max.y), beside(p.z, min.z, max.z));
+        self.least + slope * (x * x + y * y + z * z).sqrt()
     }
 }
 
@@ -82,11 +84,21 @@ impl Grading {
 
     /// Length at a place; the maximum without points.
     pub fn at(&self, p: &Point3) -> f64 {
-        let mut best = self.most;
+        self.search(p, self.most, 0.0)
+    }
+
+    /// True if the length at a place is less than `limit`.
+    pub fn is_below(&self, p: &Point3, limit: f64) -> bool {
+        self.most < limit || self.search(p, limit, limit) < limit
+    }
+
+    /// Least length at a place, or `most`. The search ends at a length below `enough`.
+    fn search(&self, p: &Point3, most: f64, enough: f64) -> f64 {
+        let mut best = most;
         let mut stack = [(0.0, 0, 0, 0); STACK];
         stack[0] = (self.nodes[0].bound(p, self.slope), 0, 0, self.points.len());
         let mut depth = 1;
-        while depth > 0 {
+        while depth > 0 && best >= enough {
             depth -= 1;
             let (bound, node, start, end) = stack[depth];
             if start == end || bound >= (1.0 - TOLERANCE) * best {
@@ -126,6 +138,7 @@ mod tests {
             let exact = all.fold(f64::INFINITY, f64::min);
             let found = grading.at(&p);
             assert!(found >= exact && found <= exact / (1.0 - TOLERANCE), "{found} {exact}");
+            assert!(grading.is_below(&p, 1.1 * exact) && !grading.is_below(&p, 0.99 * exact));
         }
         let none = Grading::new(&TriMesh::default(), &[], 0.4, 2.0);
         assert_eq!(none.at(&Point3::origin()), 2.0);

@@ -5,16 +5,13 @@
 //! layer, however fast lengths may grow. A selection of its points follows any length.
 
 use super::grading::Grading;
-use super::wall::Wall;
-use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::hilbert::hilbert_keys;
+use anastomesh_mesh::geometry::{Point3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// Minimum distance of points, relative to the length at the finer one. Their mean edge has about that length then.
-const SPACING: f64 = 0.75;
-
-/// Minimum distance from a point of the surface, in its edge lengths.
-const FROM_SURFACE: f64 = 0.8;
+const SPACING: f64 = 0.8;
 
 /// Maximum increase of lengths per distance. It bounds the levels that are searched.
 const MAX_SLOPE: f64 = 2.0;
@@ -60,7 +57,7 @@ impl Balls {
         levels.into_iter().any(|level| {
             let quarter = 0.5 * f64::from(level).exp2();
             // Balls reach half a side, so that two cubes per axis suffice.
-            let low = cube_of(&(p - anastomesh_mesh::geometry::Vec3::repeat(quarter)), level);
+            let low = cube_of(&(p - Vec3::repeat(quarter)), level);
             (0..8).any(|n| {
                 let cube = [low[0] + (n & 1), low[1] + ((n >> 1) & 1), low[2] + (n >> 2)];
                 self.contains_in((level, cube), p)
@@ -80,22 +77,14 @@ impl Balls {
     }
 }
 
-/// Points of a lattice that are as far apart as the lengths of a grading ask, and from the points of a wall. The lattice
-/// should be finer.
-pub fn spaced_points(points: &[Point3], wall: &Wall, grading: &Grading) -> Vec<Point3> {
-    let from = wall.surface.points.first().map_or_else(Point3::origin, |p| *p);
-    // Cube indices count from a point of the surface.
+/// Points of a lattice that are as far apart as the lengths of a grading ask. The lattice should be finer.
+pub fn spaced_points(points: &[Point3], grading: &Grading) -> Vec<Point3> {
+    let from = points.first().map_or_else(Point3::origin, |p| *p);
+    // Cube indices count from a point of the lattice.
     let local = |p: &Point3| Point3::from(p - from);
     let mut order: Vec<(f64, u32)> =
         points.par_iter().zip(0..points.len() as u32).map(|(p, i)| (grading.at(p), i)).collect();
     order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut fixed = Balls::default();
-    for (p, size) in wall.surface.points.iter().zip(&wall.sizes).filter(|(_, size)| **size > 0.0) {
-        fixed.insert(Ball { center: local(p), radius: FROM_SURFACE * size });
-    }
-    let mut fixed_levels: Vec<i32> = fixed.last.keys().map(|(level, _)| *level).collect();
-    fixed_levels.sort_unstable();
-    fixed_levels.dedup();
     let steepest = 1.0 + SPACING * grading.slope().min(MAX_SLOPE);
     let mut taken = Balls::default();
     let mut kept = Vec::new();
@@ -105,13 +94,37 @@ pub fn spaced_points(points: &[Point3], wall: &Wall, grading: &Grading) -> Vec<P
         let radius = SPACING * length;
         // Balls around a point have lengths up to its own, and not much smaller.
         let levels = level_of(radius / steepest)..=level_of(radius);
-        let is_free =
-            !taken.contain(&center, levels) && !fixed_levels.iter().any(|&level| fixed.contain(&center, level..=level));
-        if is_free {
+        if !taken.contain(&center, levels) {
             taken.insert(Ball { center, radius });
             kept.push(i);
         }
     }
-    kept.sort_unstable();
-    kept.into_iter().map(|i| points[i as usize]).collect()
+    // Neighbours in space are near in memory, for all later steps.
+    let places = || kept.iter().map(|&i| points[i as usize]);
+    let mut keyed: Vec<(u64, u32)> = hilbert_keys(places()).zip(kept.iter().copied()).collect();
+    keyed.par_sort_unstable();
+    keyed.into_iter().map(|(_, i)| points[i as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::TriMesh;
+
+    #[test]
+    fn points_are_as_far_apart_as_lengths_ask() {
+        let surface = TriMesh { points: vec![Point3::origin()], triangles: Vec::new() };
+        let grading = Grading::new(&surface, &[0.1], 0.4, 0.3);
+        let at = |i: u32| f64::from(i) / 20.0 - 0.5;
+        let lattice: Vec<Point3> = (0..8000).map(|n| Point3::new(at(n % 20), at(n / 20 % 20), at(n / 400))).collect();
+        let kept = spaced_points(&lattice, &grading);
+        for (i, p) in kept.iter().enumerate() {
+            let near = |q: &&Point3| (*q - p).norm() < SPACING * grading.at(p).min(grading.at(q));
+            assert!(!kept[..i].iter().any(|q| near(&q)), "{p}");
+        }
+        // No point of the lattice is free.
+        let covers = |p: &Point3, q: &Point3| (p - q).norm() < SPACING * grading.at(p);
+        assert!(lattice.iter().all(|q| kept.iter().any(|p| covers(p, q))));
+        assert!(kept.len() * 5 < lattice.len() && kept.len() > 50, "{}", kept.len());
+    }
 }

@@ -347,7 +347,7 @@ impl SizeTree {
         let Some(grading) = &self.grading else { return true };
         let side = self.side(level);
         let centre = self.origin + Vec3::from(cube.map(|i| f64::from(i) + 0.5)) * side;
-        side * self.per_side > self.coarsest * grading.at(&centre)
+        grading.is_below(&centre, side * self.per_side / self.coarsest)
     }
 }
 
