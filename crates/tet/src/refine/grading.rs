@@ -1,6 +1,6 @@
 //! Edge lengths that grow linearly with the distance from the points of a surface.
 //!
-//! The length at a place is the least of h + slope · d over the points, where h is the length at a point and d its distance.
+//! The length at a place is the least of h + slope · d over the points. Here h is the length at a point, and d its distance.
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::hilbert::hilbert_keys;
