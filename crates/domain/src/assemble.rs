@@ -106,7 +106,10 @@ pub fn assemble(
         None => surface.points[v as usize],
     };
     let mut mesh = lumen.mesh;
-    let mut tet_block = vec![LUMEN_ID; mesh.tets.len()];
+    let more = tissue.map_or(0, |tissue| tissue.tets.len());
+    mesh.tets.reserve_exact(shells.tets.len() + more);
+    let mut tet_block = Vec::with_capacity(mesh.tets.capacity());
+    tet_block.resize(mesh.tets.len(), LUMEN_ID);
     mesh.points.extend_from_slice(&shells.points);
     mesh.tets.extend(shells.tets.iter().map(|t| t.map(in_mesh)));
     tet_block.extend(shells.shell_of.iter().map(|&shell| LUMEN_ID + 1 + shell as i32));

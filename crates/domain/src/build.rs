@@ -10,7 +10,7 @@ use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::{Skeleton, Tubes};
-use anastomesh_tet::parts::{Watch, fill_watched};
+use anastomesh_tet::parts::{Watch, fill_spaced};
 use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, TetMesh, Tetrahedralizer};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -73,6 +73,9 @@ impl Domain {
             None => None,
         };
         let (mesh, regions) = assemble(lumen, &layout, tissue.as_ref(), plan);
+        // The check needs about as much memory as they do.
+        drop(layout);
+        drop((tissue, shells, surface, around));
         progress.at(Stage::Check, 0, 0);
         let check = check_regions(&mesh, &regions, Some(expectation));
         Ok(Self { mesh, regions, shells: report, check })
@@ -156,5 +159,5 @@ fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result
     if let Some(size) = plan.size {
         filler = filler.sizing(Sizing::Constant(size));
     }
-    Ok(fill_watched(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)?.mesh)
+    Ok(fill_spaced(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)?.mesh)
 }

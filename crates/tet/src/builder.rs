@@ -38,6 +38,8 @@ use std::sync::Arc;
 pub struct Tetrahedralizer {
     kind: InputKind,
     interior: Interior,
+    /// True if edge lengths of a growing interior grow as fast as they may.
+    spaced: bool,
     refinement: Option<Refinement>,
     sizing: Sizing,
     boundary: Boundary,
@@ -106,6 +108,7 @@ impl Default for Tetrahedralizer {
         Self {
             kind: InputKind::default(),
             interior: Interior::default(),
+            spaced: false,
             refinement: None,
             sizing: Sizing::default(),
             boundary: Boundary::default(),
@@ -302,6 +305,7 @@ impl Tetrahedralizer {
             heights: &[],
             optimize: self.optimize,
             certify: true,
+            spaced: self.spaced,
             spare_needles: true,
             effort: self.effort,
             strict: self.strict,
@@ -477,6 +481,15 @@ pub fn fill_watched(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> R
     by.run_watched(surface.into(), watch)
 }
 
+/// As [`fill_watched`], with selected points in a growing interior. Their distances follow the growth, where the cubes of an octree
+/// grow by at most a fifth per layer.
+///
+/// # Errors
+/// See [`fill_watched`].
+pub fn fill_spaced(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, TetError> {
+    Tetrahedralizer { spaced: true, ..by.clone() }.run_watched(surface.into(), watch)
+}
+
 /// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.
 ///
 /// The points of the mesh begin with those of the surface. The mesh has no certificate; callers check their final mesh.
@@ -501,6 +514,7 @@ pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> R
         heights: &[],
         optimize: by.optimize,
         certify: false,
+        spaced: by.spaced,
         spare_needles: false,
         effort: by.effort,
         strict: true,

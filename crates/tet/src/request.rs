@@ -25,6 +25,8 @@ pub(super) struct Request<'a> {
     /// Region that the whole volume belongs to. Its seed is not located.
     pub region: Option<&'a Region>,
     pub interior: &'a Interior,
+    /// True if the points of [`Interior::Growing`] are selected, so that edge lengths grow as fast as they may.
+    pub spaced: bool,
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
     /// Height wanted for the first tetrahedra at each point of the surface, where it is more than that of a regular

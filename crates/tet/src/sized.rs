@@ -7,7 +7,7 @@ use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
     Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
-    graded_points, limit_by_gaps, refine_complex, surrounding_points,
+    graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -25,6 +25,9 @@ const CLEARANCE: f64 = 0.45;
 /// Clearance of the points of [`Interior::Growing`], relative to the edge length of the wall.
 const GROWING_CLEARANCE: f64 = 0.5;
 
+/// As [`GROWING_CLEARANCE`], for selected points. Distances between them are longer, too.
+const SPACED_CLEARANCE: f64 = 0.6;
+
 /// Radius-edge ratio above which tetrahedra are split if no bounds are given, where the wall allows. Without it, the mean
 /// radius ratio falls below TetGen's on thin surfaces.
 const GROWING_RATIO: f64 = 1.4;
@@ -40,6 +43,9 @@ const SCAFFOLD_POINTS: f64 = 20.0;
 
 /// Height of the regular tetrahedron, in edge lengths.
 const REGULAR_HEIGHT: f64 = 0.816;
+
+/// Tetrahedra with selected points of a lattice, relative to those with all points.
+const SELECTED: f64 = 0.5;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
@@ -120,7 +126,12 @@ fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeO
 /// Wall of a run, with sizes as its interior asks.
 fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
     let growing = matches!(r.interior, Interior::Growing { .. });
-    let mut wall = wall_of(r, if growing { GROWING_CLEARANCE } else { CLEARANCE });
+    let clearance = match r.spaced {
+        _ if !growing => CLEARANCE,
+        true => SPACED_CLEARANCE,
+        false => GROWING_CLEARANCE,
+    };
+    let mut wall = wall_of(r, clearance);
     if growing {
         limit_by_gaps(&mut wall);
     }
@@ -147,14 +158,21 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
         _ => return Ok(None),
     };
     let wall = wall(r);
-    let Some(tree) = size_tree(&wall, r.sizing, longest, &tree_options(r.interior, r.sizing)) else {
+    let options = TreeOptions { is_fine: r.spaced, ..tree_options(r.interior, r.sizing) };
+    let Some(tree) = size_tree(&wall, r.sizing, longest, &options) else {
         return Ok(None);
     };
+    let grading = tree.grading().filter(|_| r.spaced);
     if let Some(limit) = r.max_tets {
-        let estimate = estimate_tets(&tree, &wall);
+        let share = if grading.is_some() { SELECTED } else { 1.0 };
+        let estimate = share * estimate_tets(&tree, &wall);
         within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
     }
-    Ok(Some(graded_points(&tree, &wall, r.watch)?))
+    let points = graded_points(&tree, &wall, r.watch)?;
+    Ok(Some(match grading {
+        Some(grading) => spaced_points(&points, grading),
+        None => points,
+    }))
 }
 
 /// Points on both sides of a surface, none of which is in `others`. They grow apart with the distance from the surface.

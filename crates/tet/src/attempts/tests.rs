@@ -47,6 +47,7 @@ fn with_request<T>(surface: &TriMesh, run: impl FnOnce(&Request) -> T) -> T {
         heights: &[],
         optimize: false,
         certify: true,
+        spaced: false,
         spare_needles: true,
         effort: Improvement::default(),
         strict: true,

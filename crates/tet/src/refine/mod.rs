@@ -4,9 +4,11 @@
 mod estimate;
 mod gaps;
 mod goals;
+mod grading;
 mod insert;
 mod points;
 mod sizes;
+mod spaced;
 mod tree;
 mod wall;
 
@@ -19,6 +21,7 @@ pub use points::{graded_points, surrounding_points};
 pub use sizes::SizeLimit;
 #[cfg(test)]
 use sizes::vertex_sizes;
+pub use spaced::spaced_points;
 pub use tree::{SizeTree, TreeOptions};
 pub use wall::Wall;
 

@@ -7,6 +7,7 @@ use crate::delaunay::hash;
 use crate::progress::{Counter, Watch};
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 /// Jitter of a point, relative to the side of the smallest adjacent cube.
@@ -17,6 +18,9 @@ const MAX_POINTS: usize = 50_000_000;
 
 /// Operations per site, as counted by budgets.
 const OPERATIONS: usize = 20;
+
+/// Sites that are tested in parallel between two checks for cancellation.
+const BATCH: usize = 1 << 14;
 
 /// Lattice position in half sides of the finest cubes, packed, with the level of the finest cube there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,22 +53,23 @@ pub fn surrounding_points(tree: &SizeTree, wall: &Wall, watch: &Watch) -> Result
 fn points_on(
     tree: &SizeTree,
     wall: &Wall,
-    wanted: impl Fn(&Point3) -> bool,
+    wanted: impl Fn(&Point3) -> bool + Sync,
     watch: &Watch,
 ) -> Result<Vec<Point3>, Stop> {
     let sites = sites(tree, wall);
     let finest = tree.levels();
     let mut points = Vec::new();
     let mut counter = Counter::new(watch);
-    for group in sites.chunk_by(|x, y| x.key == y.key) {
-        counter.add(OPERATIONS)?;
-        let level = finest - usize::from(group[0].coarseness);
-        let side = tree.side(level);
+    let groups: Vec<&[LatticeSite]> = sites.chunk_by(|x, y| x.key == y.key).collect();
+    let point = |group: &&[LatticeSite]| {
+        let side = tree.side(finest - usize::from(group[0].coarseness));
         let p = place(tree, group[0].key, side);
         let inside = group.iter().any(|s| s.unknown == 0);
-        if (inside || wanted(&p)) && wall.is_clear(&p, side) {
-            points.push(p);
-        }
+        ((inside || wanted(&p)) && wall.is_clear(&p, side)).then_some(p)
+    };
+    for batch in groups.chunks(BATCH) {
+        counter.add(OPERATIONS * batch.len())?;
+        points.par_extend(batch.par_iter().filter_map(point));
     }
     counter.end()?;
     Ok(points)

@@ -1,9 +1,11 @@
 //! Size field as a graded octree. Cubes are halved to shorten edges, and neighbours differ by at most one level, so
 //! that sizes grow slowly away from fine parts.
 
+use super::grading::Grading;
 use super::sizes::SizeLimit;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -13,6 +15,9 @@ const SPLIT_ABOVE: f64 = 1.414;
 
 /// Maximum side of a cube, relative to the side that gives the shortest edge length wanted in it.
 const SPLIT_ABOVE_LEAST: f64 = 2.0 * SPLIT_ABOVE;
+
+/// As [`SPLIT_ABOVE`], away from the surface, for cubes whose points are selected.
+const SPLIT_ABOVE_FINE: f64 = 0.8;
 
 /// As [`SPLIT_ABOVE`], for lengths from a function of the position.
 const SPLIT_ABOVE_FUNCTION: f64 = 1.2;
@@ -42,11 +47,15 @@ pub struct TreeOptions {
     /// Distance over which the side of inner cubes doubles, in sides; at least 1. `None`: inner cubes do not exceed the
     /// size asked for by the coarse parts of the surface.
     pub doubling: Option<f64>,
+    /// Increase of the edge length per distance from the surface.
+    pub slope: f64,
+    /// True if the cubes are to be smaller than the edge lengths wanted, so that points can be selected.
+    pub is_fine: bool,
 }
 
 impl Default for TreeOptions {
     fn default() -> Self {
-        Self { cell: 1.4, first: 1.0, doubling: None }
+        Self { cell: 1.4, first: 1.0, doubling: None, slope: 0.0, is_fine: false }
     }
 }
 
@@ -59,8 +68,9 @@ impl TreeOptions {
     /// Options for a ratio of edge lengths in adjacent layers of tetrahedra. The first layer is longer than the edges
     /// of the surface by the same ratio.
     pub fn growing(growth: f64) -> Self {
-        let doubling = LAYER * EDGE / (growth - 1.0).max(0.0);
-        Self { cell: 1.0 / EDGE, first: growth, doubling: Some(doubling.clamp(1.0, MAX_DOUBLING)) }
+        let slope = (growth - 1.0).max(0.0) / LAYER;
+        let doubling = Some((EDGE / slope).clamp(1.0, MAX_DOUBLING));
+        Self { cell: 1.0 / EDGE, first: growth, doubling, slope, is_fine: false }
     }
 }
 
@@ -80,6 +90,10 @@ pub struct SizeTree {
     per_side: f64,
     /// Distance from a split cube within which cubes twice as large are split, in its sides.
     doubling: f64,
+    /// Lengths away from the surface; `None` if they do not grow, or are also those of a function.
+    grading: Option<Grading>,
+    /// Maximum edge length of cubes, relative to that of the grading.
+    coarsest: f64,
 }
 
 impl SizeTree {
@@ -94,14 +108,14 @@ impl SizeTree {
                 SizeLimit::Function(_) => {}
             }
         }
-        let coarsest = coarsest(surface, &wanted);
+        let percentile = coarsest(surface, &wanted);
         let constant = limits.iter().filter_map(SizeLimit::constant).fold(f64::INFINITY, f64::min);
         let reference = match options.doubling {
             // Cubes of exactly this size, where the bound is the smallest length.
             Some(_) => middle(&wanted)?.min(constant),
             None => surface.mean_edge(),
         };
-        let usable = reference > 0.0 && coarsest > 0.0 && coarsest.is_finite() && options.cell > 0.0;
+        let usable = reference > 0.0 && percentile > 0.0 && percentile.is_finite() && options.cell > 0.0;
         if !usable {
             return None;
         }
@@ -110,7 +124,7 @@ impl SizeTree {
         // Coarsest cubes: as large as the coarse parts of the surface or the bound allow.
         let limit = match options.doubling {
             Some(_) => extent.min(1.001 * options.cell * constant),
-            None => SPLIT_ABOVE * options.cell * coarsest,
+            None => SPLIT_ABOVE * options.cell * percentile,
         };
         while side * 2.0 <= limit && side < extent {
             side *= 2.0;
@@ -127,7 +141,13 @@ impl SizeTree {
         }
         let split = vec![FxHashSet::default(); levels as usize];
         let doubling = options.doubling.unwrap_or(1.0);
-        let mut tree = Self { origin: low, side, split, splits: 0, per_side: 1.0 / options.cell, doubling };
+        // A function may ask for fine cubes far from the surface.
+        let is_free = limits.iter().any(|limit| matches!(limit, SizeLimit::Function(_)));
+        let grading =
+            options.doubling.filter(|_| !is_free).map(|_| Grading::new(surface, &wanted, options.slope, constant));
+        let coarsest = if options.is_fine { SPLIT_ABOVE_FINE } else { SPLIT_ABOVE };
+        let per_side = 1.0 / options.cell;
+        let mut tree = Self { origin: low, side, split, splits: 0, per_side, doubling, grading, coarsest };
         tree.split_at(surface, &wanted);
         for limit in limits {
             if let SizeLimit::Function(f) = limit {
@@ -136,6 +156,11 @@ impl SizeTree {
         }
         tree.balance();
         Some(tree)
+    }
+
+    /// Lengths away from the surface, if they grow.
+    pub fn grading(&self) -> Option<&Grading> {
+        self.grading.as_ref()
     }
 
     /// Side of the cubes of a level.
@@ -294,25 +319,50 @@ impl SizeTree {
     }
 
     /// Splits cubes until sizes grow slowly enough. Neighbours, including those across corners, then differ by at most
-    /// one level.
+    /// one level. Others near a split cube are split if they are too large for the lengths of a grading at their centres.
     fn balance(&mut self) {
-        // The margin excludes cubes that only touch.
-        let reach = self.doubling - 1e-9;
+        // Distance between cubes of two levels whose size is that of the grading, and a cube more.
+        let reach = self.grading.as_ref().map_or(self.doubling, |_| self.doubling / self.coarsest + 1.0);
         for level in (1..self.levels()).rev() {
             let cubes: Vec<[i32; 3]> = self.split[level].iter().copied().collect();
+            let mut open: FxHashSet<[i32; 3]> = FxHashSet::default();
             for cube in cubes {
-                let low = cube.map(|i| ((f64::from(i) - reach) / 2.0).floor() as i32);
-                let high = cube.map(|i| ((f64::from(i) + 1.0 + reach) / 2.0).floor() as i32);
-                for x in low[0]..=high[0] {
-                    for y in low[1]..=high[1] {
-                        for z in low[2]..=high[2] {
-                            self.insert(level - 1, [x, y, z]);
-                        }
-                    }
+                for parent in parents(cube, 1.0) {
+                    self.insert(level - 1, parent);
                 }
+                let around = parents(cube, reach).filter(|_| self.doubling > 1.0);
+                open.extend(around.filter(|parent| !self.is_split(level - 1, *parent)));
+            }
+            let open: Vec<[i32; 3]> = open.into_iter().collect();
+            let is_coarse = |parent: &[i32; 3]| self.is_coarse(level - 1, *parent);
+            let coarse: Vec<[i32; 3]> = open.into_par_iter().filter(is_coarse).collect();
+            for parent in coarse {
+                self.insert(level - 1, parent);
             }
         }
     }
+
+    /// True if a cube exceeds the length of the grading at its centre.
+    fn is_coarse(&self, level: usize, cube: [i32; 3]) -> bool {
+        let Some(grading) = &self.grading else { return true };
+        let side = self.side(level);
+        let centre = self.origin + Vec3::from(cube.map(|i| f64::from(i) + 0.5)) * side;
+        grading.is_below(&centre, side * self.per_side / self.coarsest)
+    }
+}
+
+/// Cubes of the coarser level within a distance of a cube, in its sides.
+fn parents(cube: [i32; 3], reach: f64) -> impl Iterator<Item = [i32; 3]> {
+    // The margin excludes cubes that only touch.
+    let reach = reach - 1e-9;
+    let [x, y, z] = cube.map(|i| {
+        let end = |x: f64| (x / 2.0).floor() as i32;
+        end(f64::from(i) - reach)..=end(f64::from(i) + 1.0 + reach)
+    });
+    x.flat_map(move |x| {
+        let z = z.clone();
+        y.clone().flat_map(move |y| z.clone().map(move |z| [x, y, z]))
+    })
 }
 
 /// The eight cubes of the next level.
