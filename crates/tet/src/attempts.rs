@@ -13,10 +13,10 @@ use super::sized;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::Point3;
 
-/// Operations of a strategy in the first round: per missing edge or triangle, and per triangle of the surface.
+/// Operations of a strategy in the first turn: per missing edge or triangle, and per triangle of the surface.
 const OPERATIONS: (u64, u64) = (2_500, 300);
 
-/// Maximum operations in the first round that are not due to missing parts. More are wasted where few parts are left.
+/// Maximum operations in the first turn that are not due to missing parts. More are wasted where few parts are left.
 const MAX_CONSTANT: u64 = 2_500_000;
 
 /// Factor of the budget for recovery in planes after few flips.
@@ -63,16 +63,16 @@ const MAX_POOR: u32 = 2;
 /// Maximum parts left for a repetition of the start: a constant, or this fraction of the parts that flips left.
 const FEWER: (usize, f64) = (64, 0.002);
 
-/// Budget, relative to that of the round, from which a start is repeated. Most parts succeed with a larger budget.
+/// Budget, relative to the first turn, from which a start is repeated. Most parts succeed with a larger budget.
 const RESTART_FROM: u64 = 4;
 
 /// Maximum repetitions of a start with the parts first that it has left.
 const MAX_RESTARTS: u32 = 3;
 
-/// Budget, relative to the first round, from which all strategies are tried whatever the gain.
+/// Budget, relative to the first turn, from which all strategies are tried whatever the gain.
 const THOROUGH: u64 = 64;
 
-/// Maximum operations of all rounds: per triangle of the surface, plus a constant.
+/// Maximum operations of all starts: per triangle of the surface, plus a constant.
 const MAX_OPERATIONS: (u64, u64) = (50_000, 1_000_000_000);
 
 /// A complex to start from, and the strategies to try there.
@@ -102,7 +102,7 @@ struct Attempt<'a> {
     origin: Option<Origin>,
 }
 
-/// Complex left by flips, to which each round returns.
+/// Complex left by flips, to which a start returns.
 #[derive(Clone)]
 struct Origin {
     complex: Complex,
@@ -125,7 +125,7 @@ type Recovered = (Complex, RecoverySummary);
 /// a small budget before any gets a larger one. `before_flips` are the edges missing in the Delaunay complex.
 ///
 /// # Errors
-/// Reason of the last failure, once all rounds have failed or [`MAX_OPERATIONS`] are spent.
+/// Reason of the last failure, once all turns have failed or [`MAX_OPERATIONS`] are spent.
 pub(super) fn recover_rest(
     r: &Request,
     points: &[Point3],
@@ -325,7 +325,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Tries all strategies, each with `share` times the operations of the first round. Stops after some that help little.
+    /// Tries all strategies, each with `share` times the operations of the first turn. Stops after some that help little.
     fn run(
         &mut self,
         r: &Request<'a>,
