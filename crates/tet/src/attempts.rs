@@ -48,8 +48,8 @@ const PROMISE: (u64, u64) = (4, 2);
 /// Maximum parts that count as few: a constant, or this fraction of the parts that flips left.
 const FEW: (usize, f64) = (8, 0.05);
 
-/// Fraction of the parts that flips left, from which a start counts as promising.
-const HALF: f64 = 0.5;
+/// Maximum parts that count as half of them.
+const HALF: (usize, f64) = (0, 0.5);
 
 /// Strategies are not repeated if they leave more than this fraction of the parts.
 const STALLED: f64 = 0.9;
@@ -121,8 +121,8 @@ struct Effort {
 /// Complex with the whole surface.
 type Recovered = (Complex, RecoverySummary);
 
-/// Recovers the rest after flips. The strategies of one start are repeated while they recover enough. All are tried with
-/// a small budget before any gets a larger one. `before_flips` are the edges missing in the Delaunay complex.
+/// Recovers the rest after flips. Starts take turns, each with larger budgets than in its last turn. The next turn belongs
+/// to the start with the fewest operations. `before_flips` are the edges missing in the Delaunay complex.
 ///
 /// # Errors
 /// Reason of the last failure, once all turns have failed or [`MAX_OPERATIONS`] are spent.
@@ -263,8 +263,14 @@ impl<'a> Attempt<'a> {
     fn claim(&self, r: &Request, first: u64) -> u64 {
         let known = self.recovery.as_ref().map(|recovery| operations(r, recovery.missing()));
         let all = self.spent + GROWTH.pow(self.turns) * known.unwrap_or(first);
-        let promise = if self.leaves(FEW) { PROMISE.0 } else { PROMISE.1 };
-        self.delay + if self.leaves((FEW.0, HALF)) { all / promise } else { all }
+        let promise = if self.leaves(FEW) {
+            PROMISE.0
+        } else if self.leaves(HALF) {
+            PROMISE.1
+        } else {
+            1
+        };
+        self.delay + all / promise
     }
 
     /// Tries all strategies with larger budgets than in the last turn.
@@ -297,8 +303,8 @@ impl<'a> Attempt<'a> {
         self.restarts += 1;
         let mut failed = self.failed.clone();
         failed.add(recovery.missing_parts());
-        let Self { flat, ways, passes, filled, delay, turns, spent, restarts, .. } = *self;
-        let mut again = Self { passes, filled, delay, turns, spent, restarts, failed, ..Self::fresh(flat, ways) };
+        let summary = RecoverySummary::default();
+        let mut again = Self { recovery: None, summary, failed, origin: None, ..*self };
         let done = again.repeat(r, points, share, effort)?;
         if done.is_none() && again.missing() < self.missing() {
             *self = again;

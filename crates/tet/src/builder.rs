@@ -473,19 +473,11 @@ impl Tetrahedralizer {
     }
 }
 
-/// Fills a closed surface in any orientation, as [`Tetrahedralizer::run`] does.
+/// Fills a closed surface in any orientation, as [`Tetrahedralizer::run`] does, with selected points in a growing interior.
+/// Their distances follow the growth, where the cubes of an octree grow by at most a fifth per layer.
 ///
 /// # Errors
 /// Those of [`Tetrahedralizer::run`]; [`TetError::Cancelled`] if the watch asks to stop.
-pub fn fill_watched(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, TetError> {
-    by.run_watched(surface.into(), watch)
-}
-
-/// As [`fill_watched`], with selected points in a growing interior. Their distances follow the growth, where the cubes of an octree
-/// grow by at most a fifth per layer.
-///
-/// # Errors
-/// See [`fill_watched`].
 pub fn fill_spaced(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, TetError> {
     Tetrahedralizer { spaced: true, ..by.clone() }.run_watched(surface.into(), watch)
 }

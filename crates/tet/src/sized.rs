@@ -126,10 +126,10 @@ fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeO
 /// Wall of a run, with sizes as its interior asks.
 fn wall<'a>(r: &Request<'a>) -> Wall<'a> {
     let growing = matches!(r.interior, Interior::Growing { .. });
-    let clearance = match r.spaced {
-        _ if !growing => CLEARANCE,
-        true => SPACED_CLEARANCE,
-        false => GROWING_CLEARANCE,
+    let clearance = match (growing, r.spaced) {
+        (false, _) => CLEARANCE,
+        (true, false) => GROWING_CLEARANCE,
+        (true, true) => SPACED_CLEARANCE,
     };
     let mut wall = wall_of(r, clearance);
     if growing {

@@ -1,8 +1,8 @@
 //! Selection of points whose distances are in proportion to a graded length.
 //!
 //! Points are taken by ascending length. Each excludes others within a share of its length. (Bridson, 'Fast Poisson disk
-//! sampling in arbitrary dimensions', 2007, with candidates from a lattice.) An octree balanced 2:1 grows by at most a fifth per
-//! layer, however fast lengths may grow. A selection of its points follows any length.
+//! sampling in arbitrary dimensions', 2007, with candidates from a lattice.) An octree balanced 2:1 grows by at most a
+//! fifth per layer, however fast lengths may grow. A selection of its points follows any length.
 
 use super::grading::Grading;
 use anastomesh_mesh::geometry::hilbert::hilbert_keys;
@@ -13,8 +13,8 @@ use rustc_hash::FxHashMap;
 /// Minimum distance of points, relative to the length at the finer one. Their mean edge has about that length then.
 const SPACING: f64 = 0.8;
 
-/// Maximum increase of lengths per distance. It bounds the levels that are searched.
-const MAX_SLOPE: f64 = 2.0;
+/// Maximum increase of lengths per distance. It bounds the levels that are searched, to 11.
+const MAX_SLOPE: f64 = 1000.0;
 
 /// A point with the radius around it that others keep clear of.
 #[derive(Clone, Copy, Debug)]

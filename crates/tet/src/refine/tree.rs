@@ -143,8 +143,8 @@ impl SizeTree {
         let doubling = options.doubling.unwrap_or(1.0);
         // A function may ask for fine cubes far from the surface.
         let is_free = limits.iter().any(|limit| matches!(limit, SizeLimit::Function(_)));
-        let grading =
-            options.doubling.filter(|_| !is_free).map(|_| Grading::new(surface, &wanted, options.slope, constant));
+        let is_graded = options.doubling.is_some_and(|doubling| !is_free && (options.is_fine || doubling > 1.0));
+        let grading = is_graded.then(|| Grading::new(surface, &wanted, options.slope, constant));
         let coarsest = if options.is_fine { SPLIT_ABOVE_FINE } else { SPLIT_ABOVE };
         let per_side = 1.0 / options.cell;
         let mut tree = Self { origin: low, side, split, splits: 0, per_side, doubling, grading, coarsest };
@@ -330,8 +330,10 @@ impl SizeTree {
                 for parent in parents(cube, 1.0) {
                     self.insert(level - 1, parent);
                 }
-                let around = parents(cube, reach).filter(|_| self.doubling > 1.0);
-                open.extend(around.filter(|parent| !self.is_split(level - 1, *parent)));
+                // Without a doubling of its own, balance alone splits cubes.
+                if self.doubling > 1.0 {
+                    open.extend(parents(cube, reach).filter(|parent| !self.is_split(level - 1, *parent)));
+                }
             }
             let open: Vec<[i32; 3]> = open.into_iter().collect();
             let is_coarse = |parent: &[i32; 3]| self.is_coarse(level - 1, *parent);
