@@ -63,8 +63,8 @@ const MAX_POOR: u32 = 2;
 /// Maximum parts left for a repetition of the start: a constant, or this fraction of the parts that flips left.
 const FEWER: (usize, f64) = (64, 0.002);
 
-/// Budget, relative to the first turn, from which a start is repeated. Most parts succeed with a larger budget.
-const RESTART_FROM: u64 = 4;
+/// Turns after which a start is not yet repeated. Most parts succeed with a larger budget.
+const RESTART_AFTER: u32 = 1;
 
 /// Maximum repetitions of a start with the parts first that it has left.
 const MAX_RESTARTS: u32 = 3;
@@ -109,6 +109,13 @@ struct Origin {
     edges: Vec<[u32; 2]>,
     triangles: Vec<u32>,
     summary: RecoverySummary,
+}
+
+impl Origin {
+    /// Number of missing edges and triangles.
+    fn parts(&self) -> usize {
+        self.edges.len() + self.triangles.len()
+    }
 }
 
 /// Work that is left, and the reason why the last strategy failed.
@@ -254,15 +261,16 @@ impl<'a> Attempt<'a> {
     /// fraction.
     fn leaves(&self, (constant, fraction): (usize, f64)) -> bool {
         let Some(origin) = &self.origin else { return false };
-        let share = fraction * (origin.edges.len() + origin.triangles.len()) as f64;
+        let share = fraction * origin.parts() as f64;
         self.missing() <= constant.max(share as usize)
     }
 
-    /// Operations that count in the choice of the next turn: those so far and those of one strategy in the next turn.
-    /// `first` are those of the first turn, while the number of missing parts is unknown.
+    /// Operations that count in the choice of the next turn: those so far, and those that the turn takes at least. `first`
+    /// are those of a start that has not begun.
     fn claim(&self, r: &Request, first: u64) -> u64 {
-        let known = self.recovery.as_ref().map(|recovery| operations(r, recovery.missing()));
-        let all = self.spent + GROWTH.pow(self.turns) * known.unwrap_or(first);
+        let Some(origin) = &self.origin else { return self.delay + self.spent + first };
+        let parts = if self.repeats_start() { origin.parts() } else { self.missing() };
+        let all = self.spent + u64::from(MAX_POOR) * self.share() * operations(r, parts);
         let promise = if self.leaves(FEW) {
             PROMISE.0
         } else if self.leaves(HALF) {
@@ -273,22 +281,34 @@ impl<'a> Attempt<'a> {
         self.delay + all / promise
     }
 
-    /// Tries all strategies with larger budgets than in the last turn.
+    /// Budget of the next turn, relative to the first. A repeated start has that of the last turn.
+    fn share(&self) -> u64 {
+        GROWTH.pow(self.turns - u32::from(self.repeats_start()))
+    }
+
+    /// True if the next turn repeats the start.
+    fn repeats_start(&self) -> bool {
+        self.turns > RESTART_AFTER && self.restarts < MAX_RESTARTS && self.leaves(FEWER)
+    }
+
+    /// Tries all strategies with larger budgets than in the last turn, or repeats the start.
     fn turn(&mut self, r: &Request<'a>, points: &[Point3], effort: &mut Effort) -> Result<Option<Recovered>, TetError> {
-        let (before, share) = (effort.left, GROWTH.pow(self.turns));
-        if self.turns > 0 && self.turns.is_multiple_of(RETURN_AFTER) {
-            self.reset(r);
-        }
-        let mut done = self.repeat(r, points, share, effort)?;
-        if done.is_none() && share >= RESTART_FROM {
-            done = self.restart(r, points, share, effort)?;
-        }
-        self.turns += 1;
+        let (before, share) = (effort.left, self.share());
+        let done = if self.repeats_start() {
+            self.restart(r, points, share, effort)?
+        } else {
+            if self.turns > 0 && self.turns.is_multiple_of(RETURN_AFTER) {
+                self.reset(r);
+            }
+            self.turns += 1;
+            self.repeat(r, points, share, effort)?
+        };
         self.spent += before - effort.left;
         Ok(done)
     }
 
-    /// Repeats a nearly successful start, while that helps. What it left comes first, while nothing is in the way.
+    /// Repeats a nearly successful start. What it left comes first, while nothing is in the way. No repetition follows one
+    /// that does not help.
     fn restart(
         &mut self,
         r: &Request<'a>,
@@ -296,13 +316,11 @@ impl<'a> Attempt<'a> {
         share: u64,
         effort: &mut Effort,
     ) -> Result<Option<Recovered>, TetError> {
-        let Some(recovery) = &self.recovery else { return Ok(None) };
-        if self.restarts == MAX_RESTARTS || !self.leaves(FEWER) || effort.left == 0 {
-            return Ok(None);
-        }
         self.restarts += 1;
         let mut failed = self.failed.clone();
-        failed.add(recovery.missing_parts());
+        if let Some(recovery) = &self.recovery {
+            failed.add(recovery.missing_parts());
+        }
         let summary = RecoverySummary::default();
         let mut again = Self { recovery: None, summary, failed, origin: None, ..*self };
         let done = again.repeat(r, points, share, effort)?;

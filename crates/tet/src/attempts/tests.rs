@@ -95,11 +95,14 @@ fn starts_take_turns_by_the_operations_spent() {
             let missing = Missing { edges: &[], triangles: &[0] };
             Attempt { delay, spent, ..Attempt::given(r, points.len(), complex, missing, 0.0) }
         };
-        // Few parts are left, so a quarter of the operations counts.
-        assert_eq!(start(3 * once, 5).claim(r, once), 5 + once);
-        let fresh = |delay| Attempt { delay, ..Attempt::fresh(None, &RecoveryStrategy::GIVEN) };
-        assert_eq!(fresh(7).claim(r, once), 7 + once);
-        let later = Attempt { turns: 2, ..fresh(0) };
-        assert_eq!(later.claim(r, once), GROWTH * GROWTH * once);
+        // Few parts are left, so a quarter of the operations counts, with two strategies of the next turn.
+        assert_eq!(start(6 * once, 5).claim(r, once), 5 + 2 * once);
+        let fresh = Attempt { delay: 7, ..Attempt::fresh(None, &RecoveryStrategy::GIVEN) };
+        assert_eq!(fresh.claim(r, once), 7 + once);
+        // After a second failure the start is repeated with the same budget.
+        let failed = Attempt { turns: 2, ..start(0, 0) };
+        assert!(failed.repeats_start() && failed.share() == GROWTH);
+        let again = Attempt { restarts: MAX_RESTARTS, ..failed };
+        assert!(!again.repeats_start() && again.share() == GROWTH * GROWTH);
     });
 }
