@@ -4,7 +4,6 @@
 
 use super::segments::Segments;
 use super::space::Space;
-use super::ways::operations;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::progress::Watch;
 use anastomesh_mesh::geometry::implicit::{self, OnTriangle};
@@ -59,7 +58,7 @@ impl Front<'_> {
             if !self.open.contains(&[a, b]) {
                 continue;
             }
-            watch.spend(operations(self.s))?;
+            watch.spend(self.s.take_work())?;
             let apex = match self.behind([a, b]).ok_or_else(|| intersection.clone())? {
                 Behind::Face(v) => v,
                 Behind::Edge(edge) => self.pierce(edge)?,

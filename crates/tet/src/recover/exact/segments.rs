@@ -4,7 +4,6 @@
 use super::dig::{Dig, Dug};
 use super::parts::sorted;
 use super::space::Space;
-use super::ways::operations;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::input::SurfaceEdges;
 use crate::progress::Watch;
@@ -111,7 +110,7 @@ impl<'a> Segments<'a> {
         self.list.push(Segment { ends, chain: vec![ends[0]] });
         let mut at = ends[0];
         while at != ends[1] {
-            watch.spend(operations(s))?;
+            watch.spend(s.take_work())?;
             let next = self.step(s, at, ends)?.unwrap_or(ends[1]);
             // Register now, so that later steps do not remove the piece.
             self.pieces.insert(sorted(at, next), id);
