@@ -150,6 +150,8 @@ def main():
     parser.add_argument("--out", help="file for one line of JSON per case")
     args = parser.parse_args()
     args.program = os.path.abspath(args.program)
+    if args.tetgen != "none":
+        args.tetgen = os.path.abspath(args.tetgen)
     if args.save:
         os.makedirs(args.save, exist_ok=True)
     out = open(args.out, "w") if args.out else None
