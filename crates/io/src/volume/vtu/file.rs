@@ -64,7 +64,9 @@ impl File<'_> {
     /// meshio 5 looks up the element of the next array by its offset, takes the first match, and replaces the offset. With bytes
     /// in the order of the header, a replaced offset may equal that of a later array. In reverse order, each match is the right one.
     fn stored_order(&self) -> Vec<usize> {
-        let tag = |i: &usize| SECTIONS.iter().position(|(place, _)| *place == self.arrays[*i].place);
+        let tag = |i: &usize| {
+            SECTIONS.iter().position(|(place, _)| *place == self.arrays[*i].place).unwrap_or(SECTIONS.len())
+        };
         let mut order: Vec<usize> = (0..self.arrays.len()).collect();
         order.sort_by_key(tag);
         order.reverse();
@@ -85,13 +87,15 @@ impl File<'_> {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
              header_type=\"UInt64\"{compressor}>\n<{kind}>\n"
         );
-        self.section(&mut text, (ArrayLocation::Field, "FieldData"), offsets);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "<Piece {}>", self.counts);
         for section in SECTIONS {
             self.section(&mut text, section, offsets);
         }
-        let _ = write!(text, "</Piece>\n</{kind}>");
+        let _ = writeln!(text, "</Piece>");
+        // Last in the header, so that their bytes are first and can be read without the others.
+        self.section(&mut text, (ArrayLocation::Field, "FieldData"), offsets);
+        let _ = write!(text, "</{kind}>");
         text
     }
 
