@@ -59,7 +59,7 @@ def main():
     points, tets, parts, numbers, patches = shells.mesh(args.program, network, args.folder / "y.vtu", *options)
     subprocess.run([args.program, "convert", args.folder / "y.vtu", "-o", args.folder / "y.msh", "-q"], check=True)
     tagged = meshio.read(args.folder / "y.msh")
-    tags = np.concatenate(tagged.cell_data_dict["gmsh:physical"]["tetra"][None])
+    tags = tagged.cell_data_dict["gmsh:physical"]["tetra"]
     meshio.write(args.folder / "y.xdmf", meshio.Mesh(tagged.points, {"tetra": tagged.cells_dict["tetra"]}, cell_data={"tags": [tags]}))
     ids = [str(tagged.field_data[name][0]) for name in ("lumen", "wall", "tissue")]
     command = ["/usr/bin/python3", "-c", SCRIPT, str(args.folder / "y.xdmf"), *ids]
