@@ -5,13 +5,8 @@ use super::figures::Figures;
 use super::head;
 use std::fmt::Write;
 
-pub(super) const FILES: [&str; 5] = [
-    "0/T",
-    "constant/transportProperties",
-    "system/controlDict",
-    "system/fvSchemes",
-    "system/fvSolution",
-];
+pub(super) const FILES: [&str; 5] =
+    ["0/T", "constant/transportProperties", "system/controlDict", "system/fvSchemes", "system/fvSolution"];
 
 /// Diffusivity of oxygen in tissue at 37 °C, in m²/s (Bentley, Meng and Pittman 1993).
 const DIFFUSIVITY: f64 = 2.41e-9;

@@ -73,7 +73,9 @@ fn interfaces_are_inner_faces_in_zones() {
     let patches = ["inlet", "outlet_0", "ring_inlet", "ring_outlet_0", "organ"];
     assert!(patches.iter().all(|name| text.contains(&format!("    {name} {{ type "))), "{text}");
     assert!(!text.contains("interface_"), "{text}");
-    for (own, region, other) in [("lumen_to_wall", "wall", "wall_to_lumen"), ("wall_to_lumen", "lumen", "lumen_to_wall")] {
+    for (own, region, other) in
+        [("lumen_to_wall", "wall", "wall_to_lumen"), ("wall_to_lumen", "lumen", "lumen_to_wall")]
+    {
         let line = text.lines().find(|line| line.starts_with(&format!("    {own} "))).unwrap();
         assert!(line.contains("type mappedWall;") && line.contains("nFaces 40;"), "{line}");
         assert!(line.contains(&format!("sampleRegion {region}; samplePatch {other};")), "{line}");
