@@ -30,6 +30,14 @@ pub(super) fn patch(FoamPatch { name, role, .. }: &FoamPatch, faces: u64, first:
     format!("    {name} {{ type {kind}; {groups}nFaces {faces}; startFace {first}; }}\n")
 }
 
+/// Entry of a patch whose faces coincide with those of a patch of another region.
+pub(super) fn mapped_patch(FoamPatch { name, faces, first, .. }: &FoamPatch, region: &str, other: &str) -> String {
+    format!(
+        "    {name} {{ type mappedWall; inGroups 1(wall); nFaces {faces}; startFace {first}; sampleMode nearestPatchFace; \
+         sampleRegion {region}; samplePatch {other}; }}\n"
+    )
+}
+
 /// Entry of the faces that a processor shares with another one.
 pub(super) fn processor_patch([own, other]: [u32; 2], faces: u64, first: u64) -> String {
     format!(

@@ -5,14 +5,8 @@ use super::figures::Figures;
 use super::head;
 use std::fmt::Write;
 
-pub(super) const FILES: [&str; 6] = [
-    "0/T",
-    "constant/transportProperties",
-    "system/controlDict",
-    "system/fvOptions",
-    "system/fvSchemes",
-    "system/fvSolution",
-];
+pub(super) const FILES: [&str; 5] =
+    ["0/T", "constant/transportProperties", "system/controlDict", "system/fvSchemes", "system/fvSolution"];
 
 /// Diffusivity of oxygen in tissue at 37 °C, in m²/s (Bentley, Meng and Pittman 1993).
 const DIFFUSIVITY: f64 = 2.41e-9;
@@ -25,8 +19,8 @@ const CORRECTIONS: u32 = 20;
 const CORRECTED: f64 = 70.0;
 
 /// Contents of the files. The lumen has concentration 1, outer surfaces 0; nothing passes ends of vessels and walls.
-pub(super) fn texts(boundary: &Boundary, figures: &Figures, has_lumen: bool) -> [(&'static str, String); 6] {
-    let texts = [concentration(boundary), transport(), control(), options(has_lumen), schemes(figures), solution()];
+pub(super) fn texts(boundary: &Boundary, figures: &Figures) -> [(&'static str, String); 5] {
+    let texts = [concentration(boundary), transport(), control(), schemes(figures), solution()];
     let mut texts = texts.into_iter();
     FILES.map(|name| (name, texts.next().unwrap_or_default()))
 }
@@ -36,11 +30,21 @@ fn is_end(patch: &FoamPatch) -> bool {
     ["inlet", "outlet", "ring"].iter().any(|kind| patch.name.starts_with(kind))
 }
 
+/// True for the surface of the lumen, seen from both sides, or from the other regions if the lumen is left out.
+fn is_of_lumen(patch: &FoamPatch) -> bool {
+    let name = &patch.name;
+    ["lumen_to_", "interface_lumen_"].iter().any(|start| name.starts_with(start)) || name.ends_with("_to_lumen")
+}
+
 fn concentration(boundary: &Boundary) -> String {
     let mut text = head::text("volScalarField", "0/T");
     text += "dimensions      [0 0 0 0 0 0 0];\ninternalField   uniform 0;\n\nboundaryField\n{\n";
     for patch in &boundary.patches {
-        let entry = if is_end(patch) { "type zeroGradient;" } else { "type fixedValue;\n        value uniform 0;" };
+        let entry = match (is_end(patch), is_of_lumen(patch)) {
+            (true, _) => "type zeroGradient;",
+            (_, true) => "type fixedValue;\n        value uniform 1;",
+            _ => "type fixedValue;\n        value uniform 0;",
+        };
         let _ = writeln!(text, "    {}\n    {{\n        {entry}\n    }}", patch.name);
     }
     text + "}\n"
@@ -56,14 +60,6 @@ fn control() -> String {
         + "application     laplacianFoam;\nstartFrom       latestTime;\nstartTime       0;\nstopAt          endTime;\nendTime         \
            1;\ndeltaT          1;\nwriteControl    timeStep;\nwriteInterval   1;\npurgeWrite      0;\nwriteFormat     \
            binary;\nwritePrecision  10;\nwriteCompression off;\ntimeFormat      general;\ntimePrecision   8;\n"
-}
-
-/// Fixes the concentration in the lumen.
-fn options(has_lumen: bool) -> String {
-    let lumen = "lumen\n{\n    type            scalarFixedValueConstraint;\n    active          yes;\n    \
-                 scalarFixedValueConstraintCoeffs\n    {\n        selectionMode   cellZone;\n        cellZone        lumen;\n        \
-                 fieldValues     { T 1; }\n    }\n}\n";
-    head::text("dictionary", "system/fvOptions") + if has_lumen { lumen } else { "" }
 }
 
 fn schemes(figures: &Figures) -> String {

@@ -12,6 +12,7 @@ mod joined;
 #[cfg(test)]
 mod layered_tests;
 mod lists;
+mod outer;
 mod outlets;
 mod poly_mesh;
 mod processors;

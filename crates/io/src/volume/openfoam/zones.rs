@@ -1,21 +1,20 @@
 //! Meshes with regions: cell zones, face zones of the interfaces, and a case of diffusion for `laplacianFoam`.
 //!
-//! Only outer faces are in patches. Interface faces are internal, as `OpenFOAM` requires.
+//! Outer faces and those of the lumen are in patches. Faces between other regions are internal, as `OpenFOAM` requires.
 
-use super::boundary::Boundary;
+use super::boundary::{Boundary, FoamPatch};
 use super::diffusion;
+use super::outer::{Interfaces, OuterMesh};
 use super::rules::Settings;
 use super::{case, head, poly_mesh};
 use crate::file::AtomicFolder;
 use crate::flow::plain;
 use crate::volume::content::MeshNotes;
 use anastomesh_mesh::faces::Faces;
-use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
-use anastomesh_mesh::region::{NamedRegion, region_faces};
-use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece, gather};
-use anastomesh_mesh::{Patch, VolumeMesh, face_key};
-use rustc_hash::FxHashMap;
+use anastomesh_mesh::region::NamedRegion;
+use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_mesh::{VolumeMesh, face_key};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -36,7 +35,8 @@ pub(super) fn write(
     progress: &dyn Progress,
 ) -> io::Result<()> {
     let volume = mesh.whole().map_or_else(|| gather(mesh).map(Cow::Owned), |volume| Ok(Cow::Borrowed(volume)))?;
-    let (outer, interfaces) = OuterMesh::of(&volume);
+    let lumen = NamedRegion::id_of(&notes.regions, NamedRegion::LUMEN);
+    let (outer, interfaces) = OuterMesh::of(&volume, lumen, &notes.regions);
     let faces = Faces::of(&outer)?;
     let boundary = Boundary::of(&outer, &faces, None)?;
     let figures = poly_mesh::write(folder, &outer, &faces, None, &boundary, None, progress)?;
@@ -44,83 +44,21 @@ pub(super) fn write(
     settings.doubts.iter().for_each(|doubt| remark(doubt));
     write_cell_zones(folder, &volume, &notes.regions)?;
     write_face_zones(folder, &volume, &faces, &interfaces)?;
-    folder.put("constant/polyMesh/boundary", case::boundary(&boundary).as_bytes())?;
+    folder.put("constant/polyMesh/boundary", patch_list(&boundary, &outer).as_bytes())?;
     folder.put("system/decomposeParDict", case::decompose(None).as_bytes())?;
-    let has_lumen = NamedRegion::id_of(&notes.regions, NamedRegion::LUMEN).is_some();
-    for (name, text) in diffusion::texts(&boundary, &figures, has_lumen) {
+    for (name, text) in diffusion::texts(&boundary, &figures) {
         folder.put(name, text.as_bytes())?;
     }
     Ok(())
 }
 
-/// Mesh without the labels of interfaces.
-struct OuterMesh<'a> {
-    volume: &'a VolumeMesh,
-    boundary: Vec<[u32; 3]>,
-    labels: Vec<i32>,
-    blocks: Vec<i32>,
-    patches: Vec<Patch>,
-}
-
-/// Interface faces by their vertices: patch and smaller region.
-type Interfaces = FxHashMap<[u32; 3], (i32, i32)>;
-
-impl<'a> OuterMesh<'a> {
-    /// Separates the labels of outer faces from those of interfaces.
-    fn of(volume: &'a VolumeMesh) -> (Self, Interfaces) {
-        let found = region_faces(&volume.mesh, &volume.tet_block);
-        let inner: FxHashMap<[u32; 3], i32> =
-            found.iter().filter(|f| f.beyond.is_some()).map(|f| (face_key(f.vertices), f.region)).collect();
-        let mut outer =
-            Self { volume, boundary: Vec::new(), labels: Vec::new(), blocks: Vec::new(), patches: Vec::new() };
-        let mut interfaces = Interfaces::default();
-        for (i, &face) in volume.boundary.iter().enumerate() {
-            let patch = volume.boundary_patch.get(i).copied().unwrap_or(0);
-            if let Some(&region) = inner.get(&face_key(face)) {
-                interfaces.insert(face_key(face), (patch, region));
-                continue;
-            }
-            outer.boundary.push(face);
-            outer.labels.push(patch);
-            outer.blocks.push(volume.boundary_block.get(i).copied().unwrap_or(0));
-        }
-        let mut used = outer.labels.clone();
-        used.sort_unstable();
-        used.dedup();
-        let is_used = |patch: &&Patch| used.binary_search(&patch.id).is_ok();
-        outer.patches = volume.patches.iter().filter(is_used).cloned().collect();
-        (outer, interfaces)
-    }
-}
-
-impl MeshSource for OuterMesh<'_> {
-    fn counts(&self) -> SourceCounts {
-        SourceCounts { boundary: self.boundary.len(), ..self.volume.counts() }
-    }
-
-    fn patches(&self) -> &[Patch] {
-        &self.patches
-    }
-
-    fn parts(&self) -> u32 {
-        1
-    }
-
-    fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        self.volume.points(part)
-    }
-
-    fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
-        self.volume.tets(part)
-    }
-
-    fn boundary(&self, _: u32) -> io::Result<FacePiece<'_>> {
-        Ok(FacePiece {
-            faces: Cow::Borrowed(&self.boundary),
-            patches: Cow::Borrowed(&self.labels),
-            blocks: Cow::Borrowed(&self.blocks),
-        })
-    }
+/// Patch list, in which the two sides of the lumen's surface are mapped to each other.
+fn patch_list(boundary: &Boundary, outer: &OuterMesh) -> String {
+    let entry = |patch: &FoamPatch| match outer.sides.get(&patch.patch.id) {
+        Some(side) => case::mapped_patch(patch, &plain(&side.region), &plain(&side.patch)),
+        None => case::patch(patch, patch.faces, patch.first),
+    };
+    case::patch_list(&boundary.patches.iter().map(entry).collect::<Vec<_>>())
 }
 
 /// Writes the cells of each region.

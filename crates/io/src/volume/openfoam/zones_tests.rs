@@ -58,8 +58,8 @@ fn interfaces_are_inner_faces_in_zones() {
     };
     let interfaces = zones(&path.join(FACE_ZONES));
     let sizes: Vec<(&str, usize)> = interfaces.iter().map(|(name, lists)| (name.as_str(), lists[0].len())).collect();
-    assert_eq!(sizes, [("interface_lumen_wall", 40), ("interface_wall_tissue", 120)]);
-    for (lists, [inner, outer]) in interfaces.values().zip([[1, 2], [2, 3]]) {
+    assert_eq!(sizes, [("interface_wall_tissue", 120)]);
+    for (lists, [inner, outer]) in interfaces.values().zip([[2, 3]]) {
         for (&face, &flip) in lists[0].iter().zip(&lists[1]) {
             let sides = [owner[face], neighbour[face]].map(|cell| volume.tet_block[cell as usize]);
             assert_eq!(sides, if flip == 0 { [inner, outer] } else { [outer, inner] });
@@ -73,6 +73,13 @@ fn interfaces_are_inner_faces_in_zones() {
     let patches = ["inlet", "outlet_0", "ring_inlet", "ring_outlet_0", "organ"];
     assert!(patches.iter().all(|name| text.contains(&format!("    {name} {{ type "))), "{text}");
     assert!(!text.contains("interface_"), "{text}");
+    for (own, region, other) in
+        [("lumen_to_wall", "wall", "wall_to_lumen"), ("wall_to_lumen", "lumen", "lumen_to_wall")]
+    {
+        let line = text.lines().find(|line| line.starts_with(&format!("    {own} "))).unwrap();
+        assert!(line.contains("type mappedWall;") && line.contains("nFaces 40;"), "{line}");
+        assert!(line.contains(&format!("sampleRegion {region}; samplePatch {other};")), "{line}");
+    }
 }
 
 #[test]
@@ -83,9 +90,12 @@ fn the_case_is_one_of_diffusion() {
     let text = |name: &str| fs::read_to_string(path.join(name)).unwrap();
     write_mesh(&path, &InPieces { volume: &volume, sizes: &[7, 100] }, &notes).unwrap();
     assert!(text("system/controlDict").contains("application     laplacianFoam;"));
-    assert!(text("system/fvOptions").contains("cellZone        lumen;"));
     let concentration = text("0/T");
     assert!(concentration.contains("    ring_inlet\n    {\n        type zeroGradient;"), "{concentration}");
+    for side in ["lumen_to_wall", "wall_to_lumen"] {
+        let fixed = format!("    {side}\n    {{\n        type fixedValue;\n        value uniform 1;");
+        assert!(concentration.contains(&fixed), "{concentration}");
+    }
     assert!(concentration.contains("    organ\n    {\n        type fixedValue;"), "{concentration}");
     let before = fs::read(path.join(CELL_ZONES)).unwrap();
     // Written again over itself, in one piece.
@@ -93,7 +103,7 @@ fn the_case_is_one_of_diffusion() {
     write_mesh(&path, &volume, &notes).unwrap();
     let after = String::from_utf8(fs::read(path.join(CELL_ZONES)).unwrap()).unwrap();
     assert_eq!(String::from_utf8(before).unwrap().replace("\nlumen\n", "\nblood\n"), after);
-    assert!(!text("system/fvOptions").contains("cellZone"));
+    assert!(!text("constant/polyMesh/boundary").contains("lumen"));
     // Flow has other files, which are no longer there.
     write_mesh(&path, &volume, &MeshNotes::default()).unwrap_err();
     assert!(!path.join("0/U").exists());

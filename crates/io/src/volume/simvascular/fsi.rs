@@ -78,11 +78,12 @@ fn mesh(part: &Part, domain: usize) -> String {
     text
 }
 
-/// Joins the faces of an interface: those of the later mesh are projected onto those of the earlier one.
+/// Joins the faces of an interface: those of the later mesh are projected onto those of the earlier one. Ends in tissue are not
+/// joined: blood passes them, and the tissue beyond is fixed.
 fn projections(parts: &[&Part]) -> String {
     let mut text = String::new();
     for (i, later) in parts.iter().enumerate() {
-        for patch in &later.patches {
+        for patch in later.patches.iter().filter(|patch| Role::of(patch) == Role::Wall) {
             let has = |part: &&&Part| part.patches.iter().any(|other| other.id == patch.id);
             if let Some(earlier) = parts[..i].iter().find(has) {
                 let _ = writeln!(
@@ -144,9 +145,9 @@ fn interaction(lumen: &Part, solids: &[Part], flow: &Flow) -> String {
     text + "</Add_equation>\n\n"
 }
 
-/// True for surfaces of a solid that do not move: the ends of the wall, and the surface of the organ.
+/// True for surfaces of a solid that do not move: the ends of the wall, those of vessels in tissue, and the surface of the organ.
 fn is_held(patch: &Patch) -> bool {
-    patch.name.starts_with("ring") || patch.name.starts_with("organ")
+    Role::of(patch) != Role::Wall || patch.name.starts_with("ring") || patch.name.starts_with("organ")
 }
 
 /// Motion of the fluid's mesh, which stays at inlets and outlets.
@@ -200,3 +201,30 @@ const MESH_OUTPUT: &str = "  <LS type=\"CG\">
   </Output>
 
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(name: &str, patches: &[(i32, &str)]) -> Part {
+        let patches = patches.iter().map(|&(id, name)| Patch { id, name: name.into(), cap: None });
+        Part { name: name.into(), patches: patches.collect() }
+    }
+
+    #[test]
+    fn ends_in_tissue_are_fixed_and_not_joined() {
+        let lumen = part("lumen", &[(2, "inlet"), (3, "outlet_0"), (4, "interface_lumen_wall")]);
+        let solids = [
+            part("wall", &[(4, "interface_lumen_wall"), (5, "interface_wall_tissue"), (6, "ring_outlet_0")]),
+            part("tissue", &[(2, "inlet"), (3, "outlet_0"), (5, "interface_wall_tissue"), (6, "ring_outlet_0")]),
+        ];
+        let joined = projections(&[&lumen, &solids[0], &solids[1]]);
+        assert!(joined.contains("tissue_interface_wall_tissue"), "{joined}");
+        assert!(!joined.contains("inlet") && !joined.contains("> tissue_outlet_0"), "{joined}");
+        assert!(!joined.contains("lumen_outlet_0"), "{joined}");
+        let text = interaction(&lumen, &solids, &Flow::new(1060.0, 0.0035));
+        for face in ["tissue_inlet", "tissue_outlet_0", "tissue_ring_outlet_0", "wall_ring_outlet_0"] {
+            assert!(text.contains(&format!("  <Add_BC name=\"{face}\">\n{FIXED}")), "{face}: {text}");
+        }
+    }
+}

@@ -45,9 +45,10 @@ impl File<'_> {
         write_spaces(out, reserved)?;
         out.write_all(APPENDED_OPEN)?;
         let base = out.stream_position()?;
-        let mut offsets = Vec::with_capacity(self.arrays.len());
-        for array in &self.arrays {
-            offsets.push(out.stream_position()? - base);
+        let mut offsets = vec![0; self.arrays.len()];
+        for i in self.stored_order() {
+            let array = &self.arrays[i];
+            offsets[i] = out.stream_position()? - base;
             write_blocks(out, array.values, array.width, self.packing(array), &array.fill)?;
         }
         out.write_all(APPENDED_CLOSE)?;
@@ -56,6 +57,20 @@ impl File<'_> {
         out.write_all(self.header(&offsets).as_bytes())?;
         out.seek(SeekFrom::Start(end))?;
         Ok(())
+    }
+
+    /// Indices of the arrays in the order of their bytes: the reverse of that in the header.
+    ///
+    /// meshio 5 looks up the element of the next array by its offset, takes the first match, and replaces the offset. With bytes
+    /// in the order of the header, a replaced offset may equal that of a later array. In reverse order, each match is the right one.
+    fn stored_order(&self) -> Vec<usize> {
+        let tag = |i: &usize| {
+            SECTIONS.iter().position(|(place, _)| *place == self.arrays[*i].place).unwrap_or(SECTIONS.len())
+        };
+        let mut order: Vec<usize> = (0..self.arrays.len()).collect();
+        order.sort_by_key(tag);
+        order.reverse();
+        order
     }
 
     fn packing(&self, array: &ArrayWriter) -> Packing {
@@ -72,13 +87,15 @@ impl File<'_> {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" \
              header_type=\"UInt64\"{compressor}>\n<{kind}>\n"
         );
-        self.section(&mut text, (ArrayLocation::Field, "FieldData"), offsets);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "<Piece {}>", self.counts);
         for section in SECTIONS {
             self.section(&mut text, section, offsets);
         }
-        let _ = write!(text, "</Piece>\n</{kind}>");
+        let _ = writeln!(text, "</Piece>");
+        // Last in the header, so that their bytes are first and can be read without the others.
+        self.section(&mut text, (ArrayLocation::Field, "FieldData"), offsets);
+        let _ = write!(text, "</{kind}>");
         text
     }
 

@@ -63,17 +63,17 @@ pub(super) struct VtuHeader {
 }
 
 impl VtuHeader {
-    /// Reads the header and the field arrays, which precede the points.
+    /// Reads the header and the field arrays, which precede all others.
     pub(super) fn read(file: &BlockFile, memory: usize) -> Result<Self, VtuPiecesError> {
         let bytes = text_of(file)?;
-        let points = {
+        let end = {
             let xml = VtkXml::parse(&bytes, "UnstructuredGrid").map_err(|_| layout("no VTU file"))?;
-            Self::of(&xml)?.points
+            Self::of(&xml)?.first_array()
         };
-        if points > memory as u64 {
+        if end > memory as u64 {
             return Err(layout("its field data are larger than the memory"));
         }
-        let bytes = file.bytes(0..points.min(file.length()))?;
+        let bytes = file.bytes(0..end.min(file.length()))?;
         let xml = VtkXml::parse(&bytes, "UnstructuredGrid").map_err(|_| layout("no VTU file"))?;
         let mut head = Self::of(&xml)?;
         let grid = grid(&xml)?;
@@ -81,6 +81,12 @@ impl VtuHeader {
         head.notes = fields.notes();
         head.patches = fields.named_patches("patch").ok_or_else(|| layout("it names no patches"))?;
         Ok(head)
+    }
+
+    /// Start of the first array of points or cells, after the field arrays.
+    fn first_array(&self) -> u64 {
+        let Self { points, connectivity, offsets, types, patch, block, .. } = *self;
+        [connectivity, offsets, types, patch, block].into_iter().fold(points, u64::min)
     }
 
     /// Parses the XML.

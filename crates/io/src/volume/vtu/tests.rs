@@ -51,6 +51,22 @@ fn options_change_how_it_stands_in_the_file() {
     assert!(!alone.labelled && alone.volume.boundary.is_empty());
 }
 
+/// meshio replaces offsets while it looks for the next one, so offsets must decrease in the order of the header.
+#[test]
+fn bytes_are_in_reverse_order_of_the_header() {
+    let (volume, notes) = labelled_tube(1);
+    for raw in [false, true] {
+        let mut bytes = Cursor::new(Vec::new());
+        let options = GridOptions { raw, ..GridOptions::default() };
+        write(&mut bytes, &volume, &notes, &WriteOptions::default().grid(options)).unwrap();
+        let text = String::from_utf8_lossy(bytes.get_ref()).into_owned();
+        let offset = |part: &str| part.split_once('"').unwrap().0.parse::<u64>().unwrap();
+        let offsets: Vec<u64> = text.split(" offset=\"").skip(1).map(offset).collect();
+        assert!(offsets.len() > 5 && offsets.is_sorted_by(|a, b| a > b), "{offsets:?}");
+        assert_eq!(offsets.last(), Some(&0));
+    }
+}
+
 /// Height of a point, and number of corners of a cell.
 struct Heights([Column; 2]);
 
