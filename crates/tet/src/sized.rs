@@ -106,11 +106,23 @@ fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
 
 /// Size field of a surface. `longest` bounds all edge lengths.
 fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeOptions) -> Option<SizeTree> {
+    size_tree_around(wall, &[], sizing, longest, options)
+}
+
+/// As [`size_tree`], with lengths at points inside.
+fn size_tree_around(
+    wall: &Wall,
+    inside: &[(Point3, f64)],
+    sizing: &Sizing,
+    longest: Option<f64>,
+    options: &TreeOptions,
+) -> Option<SizeTree> {
     let function;
     let first: Vec<f64> =
         wall.heights.iter().zip(&wall.sizes).map(|(height, size)| size.max(height / REGULAR_HEIGHT)).collect();
     let mut limits: Vec<SizeLimit> = longest.map(SizeLimit::Constant).into_iter().collect();
     limits.extend((!first.is_empty()).then_some(SizeLimit::PerVertex(&first)));
+    limits.extend((!inside.is_empty()).then_some(SizeLimit::Inside(inside)));
     match sizing {
         Sizing::Surface => {}
         Sizing::Constant(size) => limits.push(SizeLimit::Constant(*size)),
@@ -159,7 +171,7 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
     };
     let wall = wall(r);
     let options = TreeOptions { is_fine: r.spaced, ..tree_options(r.interior, r.sizing) };
-    let Some(tree) = size_tree(&wall, r.sizing, longest, &options) else {
+    let Some(tree) = size_tree_around(&wall, r.sources, r.sizing, longest, &options) else {
         return Ok(None);
     };
     let grading = tree.grading().filter(|_| r.spaced);
