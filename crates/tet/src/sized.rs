@@ -6,8 +6,8 @@ use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
-    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
-    graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
+    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_spaced, estimate_tets,
+    estimate_uniform, graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -43,9 +43,6 @@ const SCAFFOLD_POINTS: f64 = 20.0;
 
 /// Height of the regular tetrahedron, in edge lengths.
 const REGULAR_HEIGHT: f64 = 0.816;
-
-/// Tetrahedra with selected points of a lattice, relative to those with all points.
-const SELECTED: f64 = 0.5;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
@@ -176,8 +173,10 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
     };
     let grading = tree.grading().filter(|_| r.spaced);
     if let Some(limit) = r.max_tets {
-        let share = if grading.is_some() { SELECTED } else { 1.0 };
-        let estimate = share * estimate_tets(&tree, &wall);
+        let estimate = match grading {
+            Some(grading) => estimate_spaced(&tree, &wall, grading),
+            None => estimate_tets(&tree, &wall),
+        };
         within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
     }
     let points = graded_points(&tree, &wall, r.watch)?;

@@ -168,7 +168,8 @@ fn cells_have_the_length_wanted_at_vessels() {
         assert_eq!(made.check.failed().next(), None);
         assert_eq!(made.pieces.check(&made.mesh.mesh, &vessel), Ok(()));
         let mean = mean_edge(&made);
-        assert!(mean > 0.8 * length && mean < 1.3 * length, "{mean} {length}");
+        // Edges grow away from the vessel, also those of cells that it passes through.
+        assert!(mean > 1.0 * length && mean < 1.6 * length, "{mean} {length}");
     }
 }
 
