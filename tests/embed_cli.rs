@@ -130,7 +130,7 @@ fn embeddings_that_cannot_be_made_are_refused() {
         (&["--tissue-growth", "1"], 2, "invalid growth of the tissue 1"),
         (&["--tissue", small], 3, "2 nodes lie outside the surface around the tissue, first node 3"),
         (&["--embed-size", "1e-7"], 3, "--embed-size"),
-        (&["--embed-size", "0.1r", "--memory", "20MB"], 3, "raise --memory"),
+        (&["--embed-size", "0.1r", "--memory", "5MB"], 3, "raise --memory"),
     ];
     for (options, code, needle) in cases {
         let done = embed(&network, &out, options);
@@ -138,6 +138,9 @@ fn embeddings_that_cannot_be_made_are_refused() {
         assert!(stderr(&done).contains(needle), "{options:?}: {}", stderr(&done));
         assert!(!out.exists(), "{options:?}");
     }
+    let done = embed(&network, &folder.path().join("x.svmesh"), &[]);
+    assert_code(&done, 2);
+    assert!(stderr(&done).contains("lumen"), "{}", stderr(&done));
     let alone = common::program::mesh(&network, &out, &["--embed-size", "2r"]);
     assert_code(&alone, 2);
 }

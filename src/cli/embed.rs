@@ -77,6 +77,9 @@ impl EmbedRun<'_> {
         if self.format.parts.is_some() && format != MeshFormat::Pvtu {
             return Err(Failure::usage("--parts with regions around the lumen needs .pvtu"));
         }
+        if format == MeshFormat::SimVascular {
+            return Err(Failure::usage("--embed makes no lumen, which .svmesh needs: use another format"));
+        }
         ensure_writable_as(format, self.output).map_err(|e| Failure::input(e.to_string()))?;
         ensure_text_writable(&self.table()).map_err(|e| Failure::unwritable(&self.table(), &e))?;
         self.certificate.ensure_writable(format)?;

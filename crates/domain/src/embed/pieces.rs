@@ -88,8 +88,8 @@ impl Pieces {
         Ok(Self { list })
     }
 
-    /// Verifies that the pieces of each edge cover it without gaps or overlaps, that their lengths add up to that of the edge,
-    /// and that the middle of each piece lies in its cell.
+    /// Verifies that the pieces of each edge cover it without gaps or overlaps, and that their lengths add up to that of the
+    /// edge. The middle of each piece must lie in its cell.
     ///
     /// # Errors
     /// The first fault.

@@ -49,7 +49,7 @@ pub fn orient3d(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
 /// Relative magnitude of a determinant below which [`orient3d_accurate`] does not use floating-point numbers.
 const ACCURATE: f64 = 1e9 * ORIENT3D_BOUND;
 
-/// As [`orient3d`], with a magnitude that is accurate to nine digits, except for coordinates of very different magnitudes.
+/// As [`orient3d`], with a magnitude that is accurate to nine digits, except for coordinates of widely different magnitudes.
 #[inline]
 pub fn orient3d_accurate(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     let det = orient3d(a, b, c, d);
@@ -153,17 +153,21 @@ mod tests {
         prop::collection::vec(point(scale), n)
     }
 
+    #[test]
+    fn accurate_orientations_have_nine_digits() {
+        let [a, b, c] = [[0.1, 0.2, 0.3], [1.3, 0.7, 0.9], [0.4, 1.1, -0.3]].map(Point3::from);
+        for step in 0..60 {
+            // Nearer and nearer to the plane.
+            let d = a + 0.3 * (b - a) + 0.4 * (c - a) + super::super::Vec3::z() * f64::from(step).exp2().recip();
+            let expected = det(&differences(&a, &[&b, &c, &d]));
+            let error = exact(orient3d_accurate(&a, &b, &c, &d)) - &expected;
+            let square = |x: &BigRational| x * x;
+            assert!(square(&error) <= square(&expected) * exact(1e-18), "{step}");
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
-
-        #[test]
-        fn accurate_orientations_have_nine_digits(p in points(4, 1.0)) {
-            let found = orient3d_accurate(&p[0], &p[1], &p[2], &p[3]);
-            let exactly = det(&differences(&p[0], &[&p[1], &p[2], &p[3]]));
-            let error = exact(found) - exactly.clone();
-            let within = |x: BigRational| if sign(&x) < 0 { -x } else { x };
-            prop_assert!(within(error) <= within(exactly) * exact(1e-9));
-        }
 
         #[test]
         fn orient3d_has_the_exact_sign(p in points(4, 1.0)) {
