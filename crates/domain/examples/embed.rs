@@ -28,5 +28,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let sources = area.iter().filter(|&&a| a > 0.0).count();
     println!("{} tetrahedra, {sources} with a vessel; wall area {:.1}", area.len(), area.iter().sum::<f64>());
+    assert!((area.iter().sum::<f64>() - TAU * (10.0 + 1.6 * 72.0_f64.sqrt())).abs() < 1e-9);
     Ok(())
+}
+
+#[test]
+fn it_runs() {
+    main().unwrap();
 }
