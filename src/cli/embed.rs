@@ -21,7 +21,7 @@ use super::run::remarks;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::embed::{EmbedSummary, table};
 use crate::report::verdict::Verdict;
-use anastomesh_domain::{DomainError, Embedding};
+use anastomesh_domain::{DomainError, Embedding, PiecesError};
 use anastomesh_io::network::{NetworkFile, NodeNames};
 use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
 use anastomesh_io::{ensure_text_writable, write_bytes};
@@ -92,7 +92,7 @@ impl EmbedRun<'_> {
             plan.check(network, &|node| names.of(NodeId(node)))?;
             Embedding::of(network, &plan, &bars)
         };
-        let made = pool.install(make).map_err(|e| self.explain(&e))?;
+        let made = pool.install(make).map_err(|e| self.explain(e, &vessels.edges))?;
         bars.keep();
         pool.install(|| self.finish(&made, &vessels, &bars))
     }
@@ -177,9 +177,13 @@ impl EmbedRun<'_> {
         self.output.with_file_name(name)
     }
 
-    fn explain(&self, error: &DomainError) -> Failure {
+    /// Failure of an embedding. `edges` are the numbers of the edges in the file.
+    fn explain(&self, mut error: DomainError, edges: &[u32]) -> Failure {
         if error.is_cancelled() {
             return Failure::stopped(NOTHING_KEPT);
+        }
+        if let DomainError::Pieces(PiecesError::Outside { edge, .. } | PiecesError::Mesh { edge }) = &mut error {
+            *edge = edges.get(*edge as usize).copied().unwrap_or(*edge);
         }
         let hint = match error {
             DomainError::Tissue(TetError::TooMany { .. }) => {

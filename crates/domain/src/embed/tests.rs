@@ -215,7 +215,15 @@ fn edges_that_cross_the_surface_are_named() {
     organ.points.extend(small);
     let inner: Vec<[u32; 3]> = organ.triangles.iter().map(|&[a, b, c]| [a + count, c + count, b + count]).collect();
     organ.triangles.extend(inner);
+    // Both ends lie on the cavity, so that the segment between them crosses no triangle.
+    let [from, to] = [0, 3].map(|v| (organ.points[count as usize + v]).coords.into());
+    let across = network(&[from, to], 0.1, &[(0, 1)]);
     let plan = EmbedPlan::default().tissue(TissuePlan::new(TissueShape::Organ(organ)));
+    let fault = Embedding::of(&across, &plan, &()).map(|made| made.pieces);
+    assert!(
+        matches!(&fault, Err(DomainError::Pieces(PiecesError::Outside { edge: 0, at })) if *at == from),
+        "{fault:?}"
+    );
     let through = network(&[[-0.5, 0.01, 0.02], [0.5, 0.02, 0.01]], 0.1, &[(0, 1)]);
     let fault = plan.check(&through, &|node| format!("n{node}")).expect_err("a cavity");
     assert!(matches!(&fault, DomainError::EdgesOutside { count: 1, ends, .. } if ends == &["n0", "n1"]), "{fault}");
