@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 from collections.abc import Callable, Collection, Sequence
 from typing import Any, TypeVar
@@ -104,3 +105,16 @@ def read(folder: str, name: str) -> Array:
 def optional(validate: Callable[..., _Kind], name: str, values: Any, *more: Any) -> _Kind | None:
     """Validates an array that may be None."""
     return None if values is None else validate(name, values, *more)
+
+
+def columns(path: str) -> dict[str, Any]:
+    """The columns of a table: numbers where all values are, else texts. Empty values are NaN."""
+    with open(path, newline="", encoding="utf-8") as file:
+        names, *rows = csv.reader(file)
+    found: dict[str, Any] = {}
+    for name, column in zip(names, zip(*rows) if rows else [()] * len(names)):
+        try:
+            found[name] = np.array([float(value) if value else np.nan for value in column])
+        except ValueError:
+            found[name] = np.array(column)
+    return found

@@ -56,6 +56,8 @@ class Mesh:
     patches: list[Patch] = field(default_factory=list)
     #: Table of inlets and outlets: place, area, flow, pressure and so on of each.
     terminals: list[dict[str, Any]] = field(default_factory=list)
+    #: Pieces of the vessels in the cells, with ``embed=True``: columns ``edge``, ``cell``, ``start``, ``end``, ``length``, …
+    embedding: dict[str, Any] = field(default_factory=dict)
     #: Values that ``data=`` asked for, as ``{("point", "radius"): array}``.
     values: dict[tuple[str, str], Array] = field(default_factory=dict)
     #: The program's report of the run; empty without one.
@@ -184,6 +186,7 @@ class Mesh:
             regions=parts.get("tet_blocks"),
             patches=[_patch(patch) for patch in notes.get("patches", [])],
             terminals=_terminals(folder),
+            embedding=_embedding(folder),
             values=values,
             report=report or {},
             _blocks=parts.get("triangle_blocks"),
@@ -205,6 +208,15 @@ def _terminals(folder: str) -> list[dict[str, Any]]:
         return []
     with open(path, newline="", encoding="utf-8") as file:
         return [{name: _number(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
+def _embedding(folder: str) -> dict[str, Any]:
+    """Table of the pieces of embedded vessels, which the program writes beside the mesh."""
+    path = folder.removesuffix(".npyd") + "_embedding.csv"
+    if not os.path.exists(path):
+        return {}
+    found = _arrays.columns(path)
+    return {name: np.asarray(found[name], np.int64) if name in ("edge", "cell") else found[name] for name in found}
 
 
 def _number(text: str) -> Any:

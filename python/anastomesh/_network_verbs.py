@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
+from . import _arrays
 from ._arrays import Column, Rows
 from ._foreign import has_lines
 from ._mesh import Mesh
@@ -149,7 +147,7 @@ def flow(
         table = os.path.join(folder, "flow.csv")
         done = _run_with_roots(_FLOW, given, options, [f"--output={table}"], progress, folder)
         report = dict(done.ensure_success().report or {})
-        report["table"] = _columns(table)
+        report["table"] = _arrays.columns(table)
     if output is not None:
         with work_folder() as folder:
             words = [f"--output={os.fspath(output)}"]
@@ -250,19 +248,6 @@ def _run_with_roots(
             raise TypeError(f"roots={roots!r}: give a sequence of nodes")
         options["roots"] = [str(network.node(root) if isinstance(network, Network) else root) for root in roots]
     return verb.run([write_network(folder, network), *words], options, progress, folder=folder)
-
-
-def _columns(path: str) -> dict[str, Any]:
-    """The columns of a table: numbers where all values are, else texts. Empty values are NaN."""
-    with open(path, newline="", encoding="utf-8") as file:
-        names, *rows = csv.reader(file)
-    found: dict[str, Any] = {}
-    for name, column in zip(names, zip(*rows) if rows else [()] * len(names)):
-        try:
-            found[name] = np.array([float(value) if value else np.nan for value in column])
-        except ValueError:
-            found[name] = np.array(column)
-    return found
 
 
 def _to_network(verb: Verb, network: NetworkLike, options: Mapping[str, object], progress: ProgressLike) -> Network:

@@ -66,6 +66,16 @@ def test_values_of_places(fork: nx.Graph) -> None:
     assert len(np.unique(mesh.values["tet", "branch"])) == 3
 
 
+def test_embedded_vessels_are_divided_between_cells(fork: nx.Graph) -> None:
+    mesh = anastomesh.mesh(fork, embed=True, embed_size="3r", tissue="box:6")
+    assert mesh.patches[0].name == "organ" and not mesh.terminals
+    pieces = mesh.embedding
+    total = sum(np.linalg.norm(np.subtract(fork.nodes[a]["pos"], fork.nodes[b]["pos"])) for a, b in fork.edges)
+    assert pieces["length"].sum() == pytest.approx(total, rel=1e-12)
+    assert set(pieces["edge"]) == {0, 1, 2} and pieces["cell"].max() < len(mesh.tets)
+    assert anastomesh.check(mesh)
+
+
 def test_overlaps_are_an_error_with_the_mesh_and_refine_parts_them() -> None:
     network = Network([[0, 0, 0], [20, 0, 0], [10, -10, 0.5], [10, 10, 0.5]], [[0, 1], [2, 3]], [1.0, 1, 1, 1])
     with pytest.raises(anastomesh.InvalidError) as caught:

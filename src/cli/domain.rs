@@ -8,12 +8,38 @@ use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
-use anastomesh_domain::{DomainPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh_domain::{DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
 use anastomesh_io::network::NetworkFormat;
 use anastomesh_io::surface::read_surface;
 
+/// Options that need a lumen.
+const NOT_EMBEDDED: [&str; 21] = [
+    "annulus",
+    "as_is",
+    "data",
+    "dir",
+    "drop_islands",
+    "dry_run",
+    "dump_dir",
+    "frozen_joints",
+    "keep_going",
+    "layers",
+    "prisms",
+    "refine",
+    "refined",
+    "report",
+    "root",
+    "shell",
+    "size_at",
+    "split_regions",
+    "stretch",
+    "wall",
+    "without",
+];
+
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Regions")]
+#[command(group = clap::ArgGroup::new("around").args(["tissue", "embed"]).multiple(true))]
 pub struct DomainArgs {
     /// Vessel wall of this thickness: 0.05, 5um, 0.2r (r: radius), 5um+0.1r
     ///
@@ -35,11 +61,18 @@ pub struct DomainArgs {
     /// Tissue around the vessels: box, box:MARGIN, or a closed surface
     #[arg(long, value_name = "SHAPE", value_parser = checked::<TissueArg>)]
     tissue: Option<String>,
+    /// Embed the vessels in the tissue as lines, for coupled 1D-3D models, instead of meshing them. Edges of the tissue are
+    /// short at the vessels. `OUT_embedding.csv` lists the pieces of vessels in each cell (default: tissue in a box)
+    #[arg(long, conflicts_with_all = NOT_EMBEDDED)]
+    embed: bool,
+    /// Edge length at embedded vessels: 5um, 2r (r: radius), 1um+0.5r, or the name of an array
+    #[arg(long, value_name = "LENGTH", value_parser = checked::<ThicknessArg>, default_value = "2r", requires = "embed", allow_hyphen_values = true)]
+    embed_size: String,
     /// Maximum edge length in the tissue (default: growth alone determines it)
-    #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "tissue", allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "around", allow_negative_numbers = true)]
     tissue_size: Option<f64>,
     /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels
-    #[arg(long, value_name = "G", default_value_t = TissuePlan::GROWTH, value_parser = number, requires = "tissue", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = TissuePlan::GROWTH, value_parser = number, requires = "around", allow_negative_numbers = true)]
     tissue_growth: f64,
     /// Region to leave out of the result, for example lumen; repeatable
     #[arg(long, value_name = "REGION")]
@@ -101,9 +134,7 @@ impl FromStr for ThicknessArg {
             let end = term.find(|c: char| c.is_alphabetic() && c != 'e').unwrap_or(term.len());
             let (value, unit) = term.split_at(end);
             let value: f64 = value.trim().parse().map_err(|_| {
-                format!(
-                    "'{term}' is not a thickness: give a length, a share of the radius as in 0.2r, or a sum of both"
-                )
+                format!("'{term}' is not a length or a share of the radius: give a number, 0.2r, or a sum of both")
             })?;
             match unit {
                 "" => lengths.push((value, None)),
@@ -185,7 +216,7 @@ impl ThicknessArg {
 fn factor(unit: Units, network: &NetworkArgs) -> Result<f64, Failure> {
     let [_, of_network] = network.units.map(Units::names).ok_or_else(|| {
         let [unit, _] = unit.names();
-        Failure::usage(format!("a thickness in {unit} needs the unit of the network: give --units, or omit '{unit}'"))
+        Failure::usage(format!("a length in {unit} needs the unit of the network: give --units, or omit '{unit}'"))
     })?;
     let [from, _] = unit.names();
     let conversion: Units = format!("{from}:{of_network}").parse().map_err(Failure::usage)?;
@@ -209,8 +240,7 @@ impl DomainArgs {
         }
         let mut plan = DomainPlan::default().shells(shells).without(self.without.clone());
         if let Some(tissue) = &self.tissue {
-            let shape = read::<TissueArg>(tissue)?.shape()?;
-            plan.tissue = Some(TissuePlan::new(shape).size(self.tissue_size).growth(self.tissue_growth));
+            plan.tissue = Some(self.tissue(read::<TissueArg>(tissue)?)?);
         }
         plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
         if self.split_regions && plan.is_plain() {
@@ -218,6 +248,24 @@ impl DomainArgs {
                 "--split-regions needs several regions: give --wall, --annulus, --shell or --tissue",
             ));
         }
+        Ok(plan)
+    }
+
+    fn tissue(&self, shape: TissueArg) -> Result<TissuePlan, Failure> {
+        Ok(TissuePlan::new(shape.shape()?).size(self.tissue_size).growth(self.tissue_growth))
+    }
+
+    /// True if vessels are embedded in tissue instead of being meshed.
+    pub fn embeds(&self) -> bool {
+        self.embed
+    }
+
+    /// Requested embedding, with at most `max_tets` tetrahedra. Reads the surface around the tissue.
+    pub fn embedding(&self, network: &NetworkArgs, max_tets: usize) -> Result<EmbedPlan, Failure> {
+        let shape = self.tissue.as_ref().map_or(Ok(TissueArg::Box(None)), |tissue| read(tissue))?;
+        let size = read::<ThicknessArg>(&self.embed_size)?.of(network)?;
+        let plan = EmbedPlan::default().tissue(self.tissue(shape)?).size(size).max_tets(max_tets);
+        plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
         Ok(plan)
     }
 
@@ -243,6 +291,10 @@ impl DomainArgs {
             add("tissue-growth", &self.tissue_growth);
         }
         self.without.iter().for_each(|region| add("without", region));
+        if self.embed {
+            add("embed-size", &self.embed_size);
+            words.push(" --embed".into());
+        }
         words.concat()
     }
 }

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 62] = [
+const RARE: [&str; 64] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -20,6 +20,8 @@ const RARE: [&str; 62] = [
     "diameters",
     "drop-islands",
     "dump-dir",
+    "embed",
+    "embed-size",
     "every",
     "follow",
     "format",

@@ -8,6 +8,7 @@ use super::blocks::BlockArgs;
 use super::certificate::{CertificateArgs, Certified};
 use super::common::{Common, ended, print, thread_pool};
 use super::domain::DomainArgs;
+use super::embed::EmbedRun;
 use super::exit::{Exit, Failure};
 use super::fidelity::{FidelityArgs, conclude};
 use super::flow::FlowArgs;
@@ -172,6 +173,9 @@ struct Output<'a> {
 
 /// Meshes a network and writes the mesh.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
+    if args.domain.embeds() {
+        return args.embedding().run();
+    }
     let plan = args.plan()?;
     plan.validate().map_err(|e| Failure::usage(e.to_string()))?;
     if plan.smooths_joints() && args.work.dir.is_some() {
@@ -243,6 +247,21 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
+    /// Options of an embedding.
+    fn embedding(&self) -> EmbedRun<'_> {
+        EmbedRun {
+            network: &self.network,
+            output: &self.output,
+            format: self.format,
+            grid: self.grid,
+            domain: &self.domain,
+            cures: &self.cures,
+            memory: self.blocks.memory,
+            certificate: &self.certificate,
+            common: &self.common,
+        }
+    }
+
     fn plan(&self) -> Result<MeshPlan, Failure> {
         let mut beside = self.output.clone().into_os_string();
         beside.push(".failed");

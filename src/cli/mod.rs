@@ -13,6 +13,7 @@ mod convert;
 mod domain;
 mod dual;
 mod edge_values;
+mod embed;
 mod exit;
 mod fidelity;
 mod flow;

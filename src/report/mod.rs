@@ -2,6 +2,7 @@
 
 pub mod advice;
 pub mod caps;
+pub mod embed;
 pub mod fidelity;
 pub mod flow;
 pub mod info;

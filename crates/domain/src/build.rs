@@ -90,7 +90,7 @@ impl DomainPlan {
     pub fn check(&self, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
         self.validate()?;
         match &self.tissue {
-            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network, name),
+            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network, false, name),
             _ => Ok(()),
         }
     }

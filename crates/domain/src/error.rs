@@ -1,5 +1,6 @@
 //! Errors of the regions around a lumen.
 
+use super::embed::PiecesError;
 use super::plan::DomainPlanError;
 use anastomesh_mesh::units::{counted, place};
 use anastomesh_tet::TetError;
@@ -34,6 +35,19 @@ pub enum DomainError {
         /// Its place.
         at: [f64; 3],
     },
+    /// Edges of the network leave the organ's surface.
+    #[error(
+        "{} the surface around the tissue, first edge {}-{} at {}: give a surface around all vessels",
+        leave(*count), ends[0], ends[1], place(*at)
+    )]
+    EdgesOutside {
+        /// Number of edges.
+        count: usize,
+        /// Names of the ends of the first in the file.
+        ends: [String; 2],
+        /// Place of the triangle where it leaves.
+        at: [f64; 3],
+    },
     /// Vessels intersect the organ's surface, or lie outside.
     #[error(
         "{} of the vessels' wall {} the surface around the tissue, first at {}: give a surface around all vessels",
@@ -50,10 +64,17 @@ pub enum DomainError {
     /// The tissue cannot be filled.
     #[error("the tissue could not be filled: {0}")]
     Tissue(TetError),
+    /// The vessels cannot be divided between the cells of the tissue.
+    #[error(transparent)]
+    Pieces(#[from] PiecesError),
 }
 
 fn lie(count: usize) -> String {
     format!("{} lie{}", counted(count, "node"), if count == 1 { "s" } else { "" })
+}
+
+fn leave(count: usize) -> String {
+    format!("{} leave{}", counted(count, "edge"), if count == 1 { "s" } else { "" })
 }
 
 impl DomainError {
@@ -61,6 +82,7 @@ impl DomainError {
     pub fn is_cancelled(&self) -> bool {
         match self {
             Self::Shell { source, .. } | Self::Organ(source) | Self::Tissue(source) => *source == TetError::Cancelled,
+            Self::Pieces(source) => *source == PiecesError::Cancelled,
             _ => false,
         }
     }

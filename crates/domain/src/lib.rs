@@ -1,4 +1,5 @@
-//! Regions around a lumen: shells (vessel wall, perivascular space) and tissue, as one conforming mesh.
+//! Regions around a lumen: shells (vessel wall, perivascular space) and tissue, as one conforming mesh. Vessels can also be embedded in tissue
+//! as lines.
 //!
 //! The lumen's wall is the inner side of the first shell, with the same vertices and triangles. The outermost shell is the
 //! inner boundary of the tissue.
@@ -16,11 +17,13 @@
 //! |---|---|
 //! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`] |
 //! | carry out the plan | [`Domain::around`] |
+//! | embed vessels as lines in tissue | [`EmbedPlan`], [`Embedding`], [`Pieces`] |
 //!
 //! The crate has no features.
 
 mod assemble;
 mod build;
+mod embed;
 mod error;
 mod organ;
 mod plan;
@@ -29,6 +32,7 @@ mod unfold;
 mod without;
 
 pub use build::{Domain, ShellsReport};
+pub use embed::{EmbedPlan, Embedding, Piece, PieceFault, Pieces, PiecesError};
 pub use error::DomainError;
 pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
 

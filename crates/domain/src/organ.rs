@@ -3,8 +3,9 @@
 use super::error::DomainError;
 use super::plan::{TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::predicates::{orient2d, orient3d};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, crossing, self_intersections};
-use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::{Edge, NodeId, Skeleton};
 use anastomesh_tet::Tetrahedralizer;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -26,12 +27,17 @@ pub fn organ(plan: &TissuePlan, vessels: &TriMesh, outer: f64) -> Result<TriMesh
     }
 }
 
-/// Checks before meshing that an organ's surface is closed and contains the nodes of a network.
-pub fn check_organ(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
+/// Checks before meshing that an organ's surface is closed and contains the nodes of a network. `closed`: nodes exactly on
+/// the surface are inside.
+pub fn check_organ(
+    organ: &TriMesh,
+    network: &Skeleton,
+    closed: bool,
+    name: &dyn Fn(u32) -> String,
+) -> Result<(), DomainError> {
     Tetrahedralizer::new().check(organ).map_err(DomainError::Organ)?;
-    let nodes = network.nodes.iter().map(|node| node.position).collect();
-    let vessels = TriMesh { points: nodes, triangles: (0..network.nodes.len() as u32).map(|v| [v; 3]).collect() };
-    let outside = outside(organ, &vessels);
+    let vessels = axes(network);
+    let outside = outside(organ, &vessels, closed);
     match outside.first() {
         Some(&[v, ..]) => {
             let at = vessels.points[v as usize].coords.into();
@@ -41,7 +47,13 @@ pub fn check_organ(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> St
     }
 }
 
-fn box_around(vessels: &TriMesh, margin: Option<f64>, outer: f64, size: Option<f64>) -> TriMesh {
+/// Nodes of a network, each with a triangle of its own.
+pub fn axes(network: &Skeleton) -> TriMesh {
+    let points = network.nodes.iter().map(|node| node.position).collect();
+    TriMesh { points, triangles: (0..network.nodes.len() as u32).map(|v| [v; 3]).collect() }
+}
+
+pub fn box_around(vessels: &TriMesh, margin: Option<f64>, outer: f64, size: Option<f64>) -> TriMesh {
     let inner = Aabb::of_points(&vessels.points);
     let diagonal = (inner.max - inner.min).norm();
     // Shells take a part of the space.
@@ -91,7 +103,7 @@ fn grid_box(low: Point3, high: Point3, side: f64) -> TriMesh {
 }
 
 /// The surface oriented outwards as a whole.
-fn outward(mut surface: TriMesh) -> TriMesh {
+pub fn outward(mut surface: TriMesh) -> TriMesh {
     let Some(&from) = surface.points.first() else { return surface };
     let volume: f64 = surface
         .triangles
@@ -126,25 +138,74 @@ fn holds(organ: &TriMesh, vessels: &TriMesh) -> Result<(), DomainError> {
         let at = place(vessels.triangles[t as usize]);
         return Err(DomainError::VesselsOutside { count: meeting.len(), outside: false, at });
     }
-    let outside = outside(organ, vessels);
+    let outside = outside(organ, vessels, false);
     match outside.first() {
         Some(&t) => Err(DomainError::VesselsOutside { count: outside.len(), outside: true, at: place(t) }),
         None => Ok(()),
     }
 }
 
-/// Triangles of the vessels that begin outside a closed surface.
-fn outside(organ: &TriMesh, vessels: &TriMesh) -> Vec<[u32; 3]> {
+/// Triangles of the vessels that begin outside a closed surface. `closed`: the surface itself is inside.
+fn outside(organ: &TriMesh, vessels: &TriMesh, closed: bool) -> Vec<[u32; 3]> {
     let corners = |t: u32| organ.triangles[t as usize].map(|v| &organ.points[v as usize]);
     let boxes: Vec<Aabb> = (0..organ.triangles.len() as u32).map(|t| Aabb::of_points(corners(t))).collect();
     let tree = Bvh::new(&boxes);
+    let touches = |p: &Point3| {
+        let mut touched = false;
+        tree.query(&Aabb { min: *p, max: *p }, |t| touched |= is_on(p, corners(t)));
+        touched
+    };
     let is_outside = |p: &Point3| {
         let mut winding = 0;
         let ray = Aabb { min: *p, max: Point3::new(f64::INFINITY, p.y, p.z) };
         tree.query(&ray, |t| winding += crossing(p, corners(t)).unwrap_or_default());
-        winding % 2 == 0
+        winding % 2 == 0 && !(closed && touches(p))
     };
     vessels.triangles.par_iter().copied().filter(|t| is_outside(&vessels.points[t[0] as usize])).collect()
+}
+
+/// True if a point lies exactly on a triangle.
+fn is_on(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
+    let flat = |p: &Point3, axis: usize| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
+    let within = |axis: usize| {
+        let turn = |a, b, c| orient2d(flat(a, axis), flat(b, axis), flat(c, axis));
+        let turns = [turn(a, b, p), turn(b, c, p), turn(c, a, p)];
+        turns.iter().all(|&t| t >= 0.0) || turns.iter().all(|&t| t <= 0.0)
+    };
+    orient3d(a, b, c, p) == 0.0 && (0..3).all(within)
+}
+
+/// Checks that no edge of a network properly crosses an organ's surface. Edges that only touch it pass.
+pub fn check_edges(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
+    let corners = |t: u32| organ.triangles[t as usize].map(|v| &organ.points[v as usize]);
+    let boxes: Vec<Aabb> = (0..organ.triangles.len() as u32).map(|t| Aabb::of_points(corners(t))).collect();
+    let tree = Bvh::of(boxes);
+    let crossed = |edge: &Edge| {
+        let [p, q] = edge.nodes.map(|node| &network.nodes[node.index()].position);
+        let mut first = u32::MAX;
+        tree.query(&Aabb::of_points([p, q]), |t| {
+            if crosses([p, q], corners(t)) {
+                first = first.min(t);
+            }
+        });
+        (first != u32::MAX).then(|| (edge.nodes, corners(first)[0].coords.into()))
+    };
+    let leaving: Vec<([NodeId; 2], [f64; 3])> = network.edges.par_iter().filter_map(crossed).collect();
+    match leaving.first() {
+        Some(&(ends, at)) => {
+            let ends = ends.map(|node| name(network.nodes[node.index()].original));
+            Err(DomainError::EdgesOutside { count: leaving.len(), ends, at })
+        }
+        None => Ok(()),
+    }
+}
+
+/// True if a segment passes from one side of a triangle to the other through its interior.
+fn crosses([p, q]: [&Point3; 2], [a, b, c]: [&Point3; 3]) -> bool {
+    let (from, to) = (orient3d(a, b, c, p), orient3d(a, b, c, q));
+    let turns = || [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    let one_turn = |turns: [f64; 3]| turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0);
+    (from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0) && one_turn(turns())
 }
 
 #[cfg(test)]

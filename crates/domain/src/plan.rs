@@ -3,7 +3,7 @@
 use anastomesh_mesh::{NamedRegion, TriMesh};
 use anastomesh_tet::{Layers, LayersError};
 
-/// Thickness of a shell.
+/// Length that depends on the radius of the vessel: thickness of a shell, or edge length at a vessel.
 ///
 /// ```
 /// use anastomesh_domain::Thickness;
@@ -49,7 +49,7 @@ impl Thickness {
     }
 
     /// Value that is not positive, if there is one.
-    fn invalid(&self) -> Option<f64> {
+    pub(super) fn invalid(&self) -> Option<f64> {
         let negative = |x: &f64| !(*x >= 0.0 && x.is_finite());
         match self {
             Self::Law { length, radii } => {
@@ -151,6 +151,11 @@ pub enum DomainPlanError {
         /// Value.
         value: f64,
     },
+    /// The edge length at embedded vessels is zero, negative or not finite.
+    #[error(
+        "invalid edge length at the vessels {0}: give a length, a multiple of the radius, or a sum of both, above 0"
+    )]
+    Size(f64),
     /// Layers of a shell are out of range.
     #[error("layers of {name}: {source}")]
     Layers {
@@ -240,7 +245,7 @@ impl ShellPlan {
 }
 
 impl TissuePlan {
-    fn validate(&self) -> Result<(), DomainPlanError> {
+    pub(super) fn validate(&self) -> Result<(), DomainPlanError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let fault = |what, value, range| Err(DomainPlanError::Tissue { what, value, range });
         match (&self.shape, self.size) {

@@ -49,6 +49,8 @@ pub enum Stage {
     Optimize,
     /// Certifies the mesh against the input.
     Certify,
+    /// Divides the vessels between the cells of a mesh around them.
+    Embed,
 }
 
 impl Stage {
@@ -76,6 +78,7 @@ impl Stage {
             Self::Refine => "refine",
             Self::Optimize => "optimize",
             Self::Certify => "certify",
+            Self::Embed => "embed",
         }
     }
 }

@@ -40,6 +40,8 @@ pub struct Tetrahedralizer {
     interior: Interior,
     /// True if edge lengths of a growing interior grow as fast as they may.
     spaced: bool,
+    /// Edge lengths at points inside.
+    sources: Arc<[(Point3, f64)]>,
     refinement: Option<Refinement>,
     sizing: Sizing,
     boundary: Boundary,
@@ -109,6 +111,7 @@ impl Default for Tetrahedralizer {
             kind: InputKind::default(),
             interior: Interior::default(),
             spaced: false,
+            sources: Arc::default(),
             refinement: None,
             sizing: Sizing::default(),
             boundary: Boundary::default(),
@@ -306,6 +309,7 @@ impl Tetrahedralizer {
             optimize: self.optimize,
             certify: true,
             spaced: self.spaced,
+            sources: &self.sources,
             spare_needles: true,
             effort: self.effort,
             strict: self.strict,
@@ -479,7 +483,20 @@ impl Tetrahedralizer {
 /// # Errors
 /// Those of [`Tetrahedralizer::run`]; [`TetError::Cancelled`] if the watch asks to stop.
 pub fn fill_spaced(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, TetError> {
-    Tetrahedralizer { spaced: true, ..by.clone() }.run_watched(surface.into(), watch)
+    fill_around(by, surface, &[], watch)
+}
+
+/// As [`fill_spaced`], with edge lengths at points inside, from which they grow as from the surface.
+///
+/// # Errors
+/// See [`fill_spaced`].
+pub fn fill_around(
+    by: &Tetrahedralizer,
+    surface: &TriMesh,
+    sources: &[(Point3, f64)],
+    watch: &Watch,
+) -> Result<Tetrahedralization, TetError> {
+    Tetrahedralizer { spaced: true, sources: sources.into(), ..by.clone() }.run_watched(surface.into(), watch)
 }
 
 /// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.
@@ -507,6 +524,7 @@ pub fn fill_outward(by: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> R
         optimize: by.optimize,
         certify: false,
         spaced: by.spaced,
+        sources: &by.sources,
         spare_needles: false,
         effort: by.effort,
         strict: true,

@@ -27,6 +27,8 @@ pub(super) struct Request<'a> {
     pub interior: &'a Interior,
     /// True if the points of [`Interior::Growing`] are selected, so that edge lengths grow as fast as they may.
     pub spaced: bool,
+    /// Edge lengths at points inside, from which the points of [`Interior::Growing`] grow apart, too.
+    pub sources: &'a [(Point3, f64)],
     pub refinement: Option<&'a Refinement>,
     pub sizing: &'a Sizing,
     /// Height wanted for the first tetrahedra at each point of the surface, where it is more than that of a regular

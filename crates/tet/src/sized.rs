@@ -6,8 +6,8 @@ use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
-    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_tets, estimate_uniform,
-    graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
+    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_spaced, estimate_tets,
+    estimate_uniform, graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -43,9 +43,6 @@ const SCAFFOLD_POINTS: f64 = 20.0;
 
 /// Height of the regular tetrahedron, in edge lengths.
 const REGULAR_HEIGHT: f64 = 0.816;
-
-/// Tetrahedra with selected points of a lattice, relative to those with all points.
-const SELECTED: f64 = 0.5;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
@@ -106,11 +103,23 @@ fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
 
 /// Size field of a surface. `longest` bounds all edge lengths.
 fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeOptions) -> Option<SizeTree> {
+    size_tree_around(wall, &[], sizing, longest, options)
+}
+
+/// As [`size_tree`], with lengths at points inside.
+fn size_tree_around(
+    wall: &Wall,
+    inside: &[(Point3, f64)],
+    sizing: &Sizing,
+    longest: Option<f64>,
+    options: &TreeOptions,
+) -> Option<SizeTree> {
     let function;
     let first: Vec<f64> =
         wall.heights.iter().zip(&wall.sizes).map(|(height, size)| size.max(height / REGULAR_HEIGHT)).collect();
     let mut limits: Vec<SizeLimit> = longest.map(SizeLimit::Constant).into_iter().collect();
     limits.extend((!first.is_empty()).then_some(SizeLimit::PerVertex(&first)));
+    limits.extend((!inside.is_empty()).then_some(SizeLimit::Inside(inside)));
     match sizing {
         Sizing::Surface => {}
         Sizing::Constant(size) => limits.push(SizeLimit::Constant(*size)),
@@ -159,13 +168,15 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
     };
     let wall = wall(r);
     let options = TreeOptions { is_fine: r.spaced, ..tree_options(r.interior, r.sizing) };
-    let Some(tree) = size_tree(&wall, r.sizing, longest, &options) else {
+    let Some(tree) = size_tree_around(&wall, r.sources, r.sizing, longest, &options) else {
         return Ok(None);
     };
     let grading = tree.grading().filter(|_| r.spaced);
     if let Some(limit) = r.max_tets {
-        let share = if grading.is_some() { SELECTED } else { 1.0 };
-        let estimate = share * estimate_tets(&tree, &wall);
+        let estimate = match grading {
+            Some(grading) => estimate_spaced(&tree, &wall, grading),
+            None => estimate_tets(&tree, &wall),
+        };
         within(if tree.is_truncated() { estimate.max(limit as f64 + 1.0) } else { estimate }, limit)?;
     }
     let points = graded_points(&tree, &wall, r.watch)?;

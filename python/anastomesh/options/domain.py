@@ -28,4 +28,10 @@ class DomainOptions(TypedDict, total=False):
     tissue_growth: Annotated[
         float, Option("Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels", 1.3)
     ]
+    embed: Annotated[
+        bool, Option("Embed the vessels in the tissue as lines instead of meshing them; ``embedding`` of the mesh lists their pieces", False)
+    ]
+    embed_size: Annotated[
+        float | str, Option("Edge length at embedded vessels: a length (0.05, '5um'), a multiple of the radius ('2r'), a sum, or an array of the network", "2r")
+    ]
     without: Annotated[Sequence[str] | None, Option("Regions to leave out of the result, for example ['lumen']")]

@@ -48,6 +48,7 @@ fn with_request<T>(surface: &TriMesh, run: impl FnOnce(&Request) -> T) -> T {
         optimize: false,
         certify: true,
         spaced: false,
+        sources: &[],
         spare_needles: true,
         effort: Improvement::default(),
         strict: true,

@@ -1,8 +1,7 @@
-//! Edge lengths that grow linearly with the distance from the points of a surface.
+//! Edge lengths that grow linearly with the distance from points of a surface and inside.
 //!
 //! The length at a place is the least of h + slope · d over the points. Here h is the length at a point, and d its distance.
 
-use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::hilbert::hilbert_keys;
 use anastomesh_mesh::geometry::{Aabb, Point3};
 
@@ -45,9 +44,11 @@ impl GradingNode {
 }
 
 impl Grading {
-    /// Lengths up to `most` around the points of a surface with a positive length.
-    pub fn new(surface: &TriMesh, lengths: &[f64], slope: f64, most: f64) -> Self {
-        let used = || surface.points.iter().zip(lengths).filter(|(_, h)| **h > 0.0);
+    /// Lengths up to `most` around points with a positive length.
+    pub fn new<'a>(sources: impl IntoIterator<Item = (&'a [Point3], &'a [f64])>, slope: f64, most: f64) -> Self {
+        let sources: Vec<(&[Point3], &[f64])> = sources.into_iter().collect();
+        let used =
+            || sources.iter().flat_map(|(points, lengths)| points.iter().zip(*lengths)).filter(|(_, h)| **h > 0.0);
         let mut keyed: Vec<(u64, usize)> = hilbert_keys(used().map(|(p, _)| *p)).zip(0..).collect();
         keyed.sort_unstable();
         let given: Vec<(Point3, f64)> = used().map(|(p, h)| (*p, *h)).collect();
@@ -130,7 +131,7 @@ mod tests {
     fn lengths_are_the_least_of_all_points() {
         let surface = sphere_surface(3);
         let lengths: Vec<f64> = surface.points.iter().map(|p| 0.02 + 0.1 * p.z.max(0.0)).collect();
-        let grading = Grading::new(&surface, &lengths, 0.4, f64::INFINITY);
+        let grading = Grading::new([(&surface.points[..], &lengths[..])], 0.4, f64::INFINITY);
         for i in 0..200 {
             let part = |k: u32| (f64::from(i) * 0.37 * f64::from(k)).sin() * 2.0;
             let p = Point3::new(part(1), part(2), part(3));
@@ -140,7 +141,7 @@ mod tests {
             assert!(found >= exact && found <= exact / (1.0 - TOLERANCE), "{found} {exact}");
             assert!(grading.is_below(&p, 1.1 * exact) && !grading.is_below(&p, 0.99 * exact));
         }
-        let none = Grading::new(&TriMesh::default(), &[], 0.4, 2.0);
+        let none = Grading::new([], 0.4, 2.0);
         assert_eq!(none.at(&Point3::origin()), 2.0);
     }
 }

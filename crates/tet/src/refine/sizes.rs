@@ -21,6 +21,8 @@ pub enum SizeLimit<'a> {
     Constant(f64),
     /// Bound at each vertex of the surface.
     PerVertex(&'a [f64]),
+    /// Bounds at points inside.
+    Inside(&'a [(Point3, f64)]),
     /// Bound as a function of position; called from one thread, for points in and near the surface's bounding box.
     Function(&'a (dyn Fn(&Point3) -> f64 + 'a)),
 }
@@ -30,6 +32,7 @@ impl std::fmt::Debug for SizeLimit<'_> {
         match self {
             Self::Constant(size) => write!(f, "Constant({size})"),
             Self::PerVertex(sizes) => write!(f, "PerVertex({} values)", sizes.len()),
+            Self::Inside(points) => write!(f, "Inside({} points)", points.len()),
             Self::Function(_) => write!(f, "Function"),
         }
     }
@@ -40,7 +43,7 @@ impl SizeLimit<'_> {
     pub fn constant(&self) -> Option<f64> {
         match self {
             Self::Constant(size) => Some(*size),
-            Self::PerVertex(_) | Self::Function(_) => None,
+            Self::PerVertex(_) | Self::Inside(_) | Self::Function(_) => None,
         }
     }
 }

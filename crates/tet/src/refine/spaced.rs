@@ -109,12 +109,10 @@ pub fn spaced_points(points: &[Point3], grading: &Grading) -> Vec<Point3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use anastomesh_mesh::TriMesh;
 
     #[test]
     fn points_are_as_far_apart_as_lengths_ask() {
-        let surface = TriMesh { points: vec![Point3::origin()], triangles: Vec::new() };
-        let grading = Grading::new(&surface, &[0.1], 0.4, 0.3);
+        let grading = Grading::new([(&[Point3::origin()][..], &[0.1][..])], 0.4, 0.3);
         let at = |i: u32| f64::from(i) / 20.0 - 0.5;
         let lattice: Vec<Point3> = (0..8000).map(|n| Point3::new(at(n % 20), at(n / 20 % 20), at(n / 400))).collect();
         let kept = spaced_points(&lattice, &grading);

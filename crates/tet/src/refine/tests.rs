@@ -132,6 +132,23 @@ fn estimates_agree_with_meshes() {
 }
 
 #[test]
+fn estimates_of_selected_points_agree_with_meshes() {
+    let surface = sphere_surface(2);
+    let line: Vec<(Point3, f64)> = (-40..=40).map(|i| (Point3::new(0.0, 0.0, f64::from(i) / 100.0), 0.01)).collect();
+    for growth in [1.3, 2.0] {
+        let wall = Wall::new(&surface, InputKind::Closed, 0.6);
+        let options = TreeOptions { is_fine: true, ..TreeOptions::growing(growth) };
+        let tree = SizeTree::new(&surface, &wall.sizes, &[SizeLimit::Inside(&line)], &options).unwrap();
+        let by = crate::Tetrahedralizer::new().interior(crate::Interior::Growing { growth }).optimize(false);
+        let made = crate::parts::fill_around(&by, &surface, &line, &Watch::NOBODY).unwrap();
+        let ratio = estimate_spaced(&tree, &wall, tree.grading().unwrap()) / made.mesh.tets.len() as f64;
+        assert!((0.6..1.6).contains(&ratio), "{growth}: {ratio}, {} tetrahedra", made.mesh.tets.len());
+        let alone = crate::parts::fill_spaced(&by, &surface, &Watch::NOBODY).unwrap();
+        assert!(4 * alone.mesh.tets.len() < made.mesh.tets.len());
+    }
+}
+
+#[test]
 fn the_same_surface_gives_the_same_points() {
     let s = drawn_sphere(3);
     let sizes = vertex_sizes(&s);

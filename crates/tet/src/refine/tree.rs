@@ -105,14 +105,15 @@ impl SizeTree {
             match limit {
                 SizeLimit::PerVertex(bound) => wanted.iter_mut().zip(*bound).for_each(|(w, b)| *w = w.min(*b)),
                 SizeLimit::Constant(bound) => wanted.iter_mut().for_each(|w| *w = w.min(*bound)),
-                SizeLimit::Function(_) => {}
+                SizeLimit::Inside(_) | SizeLimit::Function(_) => {}
             }
         }
+        let inside = inside(limits);
         let percentile = coarsest(surface, &wanted);
         let constant = limits.iter().filter_map(SizeLimit::constant).fold(f64::INFINITY, f64::min);
         let reference = match options.doubling {
             // Cubes of exactly this size, where the bound is the smallest length.
-            Some(_) => middle(&wanted)?.min(constant),
+            Some(_) => middle(wanted.iter().chain(&inside.1))?.min(constant),
             None => surface.mean_edge(),
         };
         let usable = reference > 0.0 && percentile > 0.0 && percentile.is_finite() && options.cell > 0.0;
@@ -144,11 +145,15 @@ impl SizeTree {
         // A function may ask for fine cubes far from the surface.
         let is_free = limits.iter().any(|limit| matches!(limit, SizeLimit::Function(_)));
         let is_graded = options.doubling.is_some_and(|doubling| !is_free && (options.is_fine || doubling > 1.0));
-        let grading = is_graded.then(|| Grading::new(surface, &wanted, options.slope, constant));
+        let sources = || [(surface.points.as_slice(), wanted.as_slice()), (&inside.0, &inside.1)];
+        let grading = is_graded.then(|| Grading::new(sources(), options.slope, constant));
         let coarsest = if options.is_fine { SPLIT_ABOVE_FINE } else { SPLIT_ABOVE };
         let per_side = 1.0 / options.cell;
         let mut tree = Self { origin: low, side, split, splits: 0, per_side, doubling, grading, coarsest };
-        tree.split_at(surface, &wanted);
+        tree.split_at(&surface.points, &wanted);
+        // Between the points of a surface are its edges. Points inside need as fine cubes as other places.
+        let share = if options.is_fine { SPLIT_ABOVE_FINE / SPLIT_ABOVE } else { 1.0 };
+        tree.split_at(&inside.0, &inside.1.iter().map(|h| share * h).collect::<Vec<f64>>());
         for limit in limits {
             if let SizeLimit::Function(f) = limit {
                 tree.split_by(surface, f);
@@ -224,12 +229,12 @@ impl SizeTree {
         fresh
     }
 
-    /// Splits the cubes around the points of a surface until they are small enough for the edge lengths `wanted` there.
-    fn split_at(&mut self, surface: &TriMesh, wanted: &[f64]) {
+    /// Splits the cubes around points until they are small enough for the edge lengths `wanted` there.
+    fn split_at(&mut self, points: &[Point3], wanted: &[f64]) {
         let used = |v: &u32| wanted[*v as usize] > 0.0;
-        let mut list: Vec<u32> = (0..surface.points.len().min(wanted.len()) as u32).filter(used).collect();
+        let mut list: Vec<u32> = (0..points.len().min(wanted.len()) as u32).filter(used).collect();
         let mut stack = Vec::new();
-        self.push_groups(surface, 0, &mut list, 0, &mut stack);
+        self.push_groups(points, 0, &mut list, 0, &mut stack);
         while let Some((level, range)) = stack.pop() {
             let group: &mut [u32] = &mut list[range.clone()];
             let (mut sum, mut least) = (0.0, f64::INFINITY);
@@ -241,9 +246,9 @@ impl SizeTree {
             let size = self.side(level) * self.per_side;
             let mean = (sum / group.len() as f64).exp();
             if level < self.levels() && (size > SPLIT_ABOVE * mean || size > SPLIT_ABOVE_LEAST * least) {
-                let cube = self.cube_at(&surface.points[group[0] as usize], level);
+                let cube = self.cube_at(&points[group[0] as usize], level);
                 self.insert(level, cube);
-                self.push_groups(surface, level + 1, group, range.start, &mut stack);
+                self.push_groups(points, level + 1, group, range.start, &mut stack);
             }
         }
     }
@@ -251,13 +256,13 @@ impl SizeTree {
     /// Sorts points by their cubes of a level, and adds a range for each cube to the stack. The list begins at `start`.
     fn push_groups(
         &self,
-        surface: &TriMesh,
+        points: &[Point3],
         level: usize,
         list: &mut [u32],
         start: usize,
         stack: &mut Vec<(usize, Range<usize>)>,
     ) {
-        let cube = |v: &u32| self.cube_at(&surface.points[*v as usize], level);
+        let cube = |v: &u32| self.cube_at(&points[*v as usize], level);
         list.sort_by_cached_key(cube);
         let mut at = start;
         for group in list.chunk_by(|v, w| cube(v) == cube(w)) {
@@ -379,6 +384,15 @@ fn bounds(surface: &TriMesh) -> (Point3, f64) {
     (low, (high - low).max())
 }
 
+/// Points inside with a bound, and the bounds.
+fn inside(limits: &[SizeLimit]) -> (Vec<Point3>, Vec<f64>) {
+    let of_limit = |limit: &SizeLimit| match limit {
+        SizeLimit::Inside(points) => points.to_vec(),
+        _ => Vec::new(),
+    };
+    limits.iter().flat_map(of_limit).unzip()
+}
+
 /// Edge length of the coarse parts of a surface: the 90th percentile by area.
 fn coarsest(surface: &TriMesh, sizes: &[f64]) -> f64 {
     let mut parts: Vec<(f64, f64)> = Vec::with_capacity(surface.triangles.len());
@@ -401,9 +415,9 @@ fn coarsest(surface: &TriMesh, sizes: &[f64]) -> f64 {
 
 /// Edge length in the middle of the octaves of given lengths: the circular mean of their logarithms. Cubes whose sides
 /// are powers of two times this length deviate least from the lengths.
-fn middle(sizes: &[f64]) -> Option<f64> {
+fn middle<'a>(sizes: impl Iterator<Item = &'a f64>) -> Option<f64> {
     let (mut x, mut y, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
-    for &h in sizes.iter().filter(|&&h| h > 0.0 && h.is_finite()) {
+    for &h in sizes.filter(|&&h| h > 0.0 && h.is_finite()) {
         let (sine, cosine) = (TAU * h.log2()).sin_cos();
         (x, y) = (x + cosine, y + sine);
         (sum, count) = (sum + h.log2(), count + 1.0);
