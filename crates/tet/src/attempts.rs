@@ -35,6 +35,9 @@ const GROWTH: u64 = 4;
 /// Turns after which a start returns to the complex left by flips. Parts that are recovered may be in the way of others.
 const RETURN_AFTER: u32 = 3;
 
+/// A start is given up if flips leave more than this many times the parts of another start.
+const HOPELESS: usize = 4;
+
 /// Operations of each earlier start before a start begins, relative to the first turn of one strategy. The second number
 /// holds after the first [`EARLY`] starts, which succeed most often.
 const DELAY: (u64, u64) = (1, 4);
@@ -89,6 +92,8 @@ struct Attempt<'a> {
     filled: bool,
     /// True if strategies have helped little.
     abandoned: bool,
+    /// True if flips have left far more parts than those of another start.
+    hopeless: bool,
     /// Operations of other starts before this one begins.
     delay: u64,
     /// Turns and operations so far.
@@ -123,6 +128,8 @@ struct Effort {
     /// Operations that all strategies together may still take.
     left: u64,
     last: TetError,
+    /// Fewest parts that the flips of a start have left.
+    fewest: usize,
 }
 
 /// Complex with the whole surface.
@@ -172,13 +179,14 @@ pub(super) fn recover_rest(
     attempts.extend(others.map(thick));
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
     let whole = MAX_OPERATIONS.0 * r.surface.triangles.len() as u64 + MAX_OPERATIONS.1;
-    let mut effort = Effort { left: whole, last };
-    let first = operations(r, edges.len() + missing.triangles.len());
+    let fewest = edges.len() + missing.triangles.len();
+    let mut effort = Effort { left: whole, last, fewest };
+    let first = operations(r, fewest);
     for (place, attempt) in (0..).zip(&mut attempts) {
         attempt.delay = place * first * if place < EARLY { DELAY.0 } else { DELAY.1 };
     }
     while effort.left > 0 {
-        let open = attempts.iter_mut().filter(|attempt| attempt.turns < MAX_TURNS);
+        let open = attempts.iter_mut().filter(|attempt| attempt.turns < MAX_TURNS && !attempt.hopeless);
         let Some(next) = open.min_by_key(|attempt| attempt.claim(r, first)) else { break };
         if let Some(done) = next.turn(r, points, &mut effort)? {
             return Ok(done);
@@ -228,6 +236,7 @@ impl<'a> Attempt<'a> {
             passes: None,
             filled: false,
             abandoned: false,
+            hopeless: false,
             delay: 0,
             turns: 0,
             spent: 0,
@@ -269,9 +278,12 @@ impl<'a> Attempt<'a> {
     /// are those of a start that has not begun.
     fn claim(&self, r: &Request, first: u64) -> u64 {
         let Some(origin) = &self.origin else { return self.delay + self.spent + first };
-        let parts = if self.repeats_start() { origin.parts() } else { self.missing() };
+        let fresh = self.repeats_start() || self.returns();
+        let parts = if fresh { origin.parts() } else { self.missing() };
         let all = self.spent + u64::from(MAX_POOR) * self.share() * operations(r, parts);
-        let promise = if self.leaves(FEW) {
+        let promise = if self.returns() {
+            1
+        } else if self.leaves(FEW) {
             PROMISE.0
         } else if self.leaves(HALF) {
             PROMISE.1
@@ -291,13 +303,18 @@ impl<'a> Attempt<'a> {
         self.turns > RESTART_AFTER && self.restarts < MAX_RESTARTS && self.leaves(FEWER)
     }
 
+    /// True if the next turn returns to the complex left by flips.
+    fn returns(&self) -> bool {
+        self.turns > 0 && self.turns.is_multiple_of(RETURN_AFTER) && !self.repeats_start()
+    }
+
     /// Tries all strategies with larger budgets than in the last turn, or repeats the start.
     fn turn(&mut self, r: &Request<'a>, points: &[Point3], effort: &mut Effort) -> Result<Option<Recovered>, TetError> {
         let (before, share) = (effort.left, self.share());
         let done = if self.repeats_start() {
             self.restart(r, points, share, effort)?
         } else {
-            if self.turns > 0 && self.turns.is_multiple_of(RETURN_AFTER) {
+            if self.returns() {
                 self.reset(r);
             }
             self.turns += 1;
@@ -343,7 +360,7 @@ impl<'a> Attempt<'a> {
         loop {
             let before = self.missing();
             let done = self.run(r, points, share, effort)?;
-            if done.is_some() || effort.left == 0 || self.abandoned || self.has_stalled(before) {
+            if done.is_some() || effort.left == 0 || self.abandoned || self.hopeless || self.has_stalled(before) {
                 return Ok(done);
             }
         }
@@ -361,6 +378,12 @@ impl<'a> Attempt<'a> {
             && let Some(done) = self.start(r, points)?
         {
             return Ok(Some(done));
+        }
+        let parts = self.origin.as_ref().map_or(0, Origin::parts);
+        effort.fewest = effort.fewest.min(parts);
+        if parts > HOPELESS * effort.fewest {
+            self.hopeless = true;
+            return Ok(None);
         }
         let share = if self.passes.is_some() { PLANE_SHARE * share } else { share };
         let mut poor = 0;
