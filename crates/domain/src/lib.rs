@@ -14,14 +14,19 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`] |
+//! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`], [`TissueRegion`] |
 //! | carry out the plan | [`Domain::around`] |
 //!
 //! The crate has no features.
 
 mod assemble;
+mod before;
 mod build;
 mod error;
+mod hull;
+mod inside;
+mod layout;
+mod nested;
 mod organ;
 mod plan;
 mod surface;
@@ -30,7 +35,7 @@ mod without;
 
 pub use build::{Domain, ShellsReport};
 pub use error::DomainError;
-pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
+pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
 
 /// The example of the README is a test.
 #[cfg(doctest)]
