@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 62] = [
+const RARE: [&str; 65] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -63,7 +63,10 @@ const RARE: [&str; 62] = [
     "split-regions",
     "stretch",
     "tissue-growth",
+    "tissue-region",
+    "tissue-remesh",
     "tissue-size",
+    "tissue-tolerance",
     "to",
     "uniform",
     "version",

@@ -69,11 +69,7 @@ impl DomainPlan {
 }
 
 /// Checks that an organ's surface contains the nodes of a network.
-fn contains_nodes(
-    organ: &TriMesh,
-    network: &Skeleton,
-    name: &dyn Fn(u32) -> String,
-) -> Result<(), DomainError> {
+fn contains_nodes(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
     let closed = Closed::new(organ);
     let outside: Vec<_> = network.nodes.par_iter().filter(|node| !closed.contains(&node.position)).collect();
     match outside.first() {
@@ -198,7 +194,9 @@ mod tests {
         open.triangles.pop();
         let fault = checked(organ_with(ball(5.0, 20.0), Some(open)));
         assert!(matches!(fault, Err(DomainError::Region { .. })), "{fault:?}");
-        let boxed = |z| TissuePlan::new(TissueShape::Box { margin: Some(4.0) }).regions(vec![TissueRegion::new("a", ball(z, 0.5))]);
+        let boxed = |z| {
+            TissuePlan::new(TissueShape::Box { margin: Some(4.0) }).regions(vec![TissueRegion::new("a", ball(z, 0.5))])
+        };
         checked(boxed(-3.0)).expect("inside");
         assert!(matches!(checked(boxed(-9.0)), Err(DomainError::RegionOutside { .. })));
         assert!(matches!(checked(boxed(-5.0)), Err(DomainError::SurfacesMeet { .. })));
@@ -210,7 +208,8 @@ mod tests {
     #[test]
     fn boxes_within_the_shells_are_refused() {
         let wall = ShellPlan::new("wall", Thickness::Law { length: 0.0, radii: 0.5 });
-        let plan = DomainPlan::default().shells(vec![wall]).tissue(TissuePlan::new(TissueShape::Box { margin: Some(0.4) }));
+        let plan =
+            DomainPlan::default().shells(vec![wall]).tissue(TissuePlan::new(TissueShape::Box { margin: Some(0.4) }));
         let fault = plan.check(&line(), &|node| node.to_string());
         assert!(matches!(fault, Err(DomainError::NoSpace { .. })), "{fault:?}");
     }

@@ -48,7 +48,9 @@ pub enum DomainError {
         at: [f64; 3],
     },
     /// The margin of a box is within the shells.
-    #[error("no space for tissue: the margin {margin} of the box is within the shells, whose thickness is up to {thickness}: give a wider margin")]
+    #[error(
+        "no space for tissue: the margin {margin} of the box is within the shells, whose thickness is up to {thickness}: give a wider margin"
+    )]
     NoSpace {
         /// Margin.
         margin: f64,
