@@ -57,8 +57,16 @@ pub enum DomainError {
         /// Largest thickness of all shells together.
         thickness: f64,
     },
-    /// There is no hull of the vessels.
-    #[error("the vessels have no hull: {0}")]
+    /// The margin of a hull is too small for its triangles.
+    #[error("the margin {margin} of the hull is too small for the extent of the vessels: give at least {least:.2e}")]
+    Margin {
+        /// Margin.
+        margin: f64,
+        /// Minimum.
+        least: f64,
+    },
+    /// The hull of the vessels cannot be made.
+    #[error("the hull of the vessels cannot be made: {0}")]
     Hull(TetError),
     /// Surfaces cannot be remeshed.
     #[error("the surfaces of the tissue cannot be remeshed: {0}")]

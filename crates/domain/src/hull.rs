@@ -1,42 +1,47 @@
-//! Convex hull of spheres at a distance: the organ's hull around a network.
+//! Hull of spheres at a distance: the organ's hull around a network.
 //!
-//! The hull of spheres, enlarged by a margin, has a support point in each direction: the extreme sphere's centre, and
-//! from there radius and margin along the direction. The hull of many such points is a closed convex surface.
+//! The body is the intersection of half-spaces, one for each of many directions. Each holds all spheres with a margin. The
+//! body is convex, so that each ray from its centre leaves it once. A sphere's triangles moved along these rays give a
+//! closed surface without self-intersections, which is then remeshed.
 
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::{Aabb, Point3, Vec3};
+use anastomesh_mesh::nalgebra::Matrix3;
 use anastomesh_mesh::shapes::sphere_surface;
+use anastomesh_tet::TetError;
 use anastomesh_tet::parts::{Watch, remesh_closed};
-use anastomesh_tet::{TetError, Tetrahedralizer};
 use rayon::prelude::*;
 
-/// Levels of the subdivided icosahedron whose 642 vertices are the directions. They are 8° apart.
-const LEVEL: usize = 3;
+/// Levels of the subdivided icosahedron whose 2562 vertices are the directions. They are 4° apart.
+const LEVEL: usize = 4;
+/// Levels of the triangles that are moved. The last one has 327,680.
+const LEVELS: [usize; 2] = [3, 7];
+/// Maximum extent of the spheres in margins. At this ratio, edges of the last level are about two margins long.
+pub const RATIO: f64 = 400.0;
 /// Distance between the hull and its remeshed surface, relative to the margin.
 const TOLERANCE: f64 = 0.05;
 
 /// Sphere: centre and radius.
 pub type Sphere = (Point3, f64);
 
-/// Closed convex surface around spheres, at a margin above 0. Edges have about this length, and less at bends.
+/// Closed surface around spheres, at a margin above 0. Edges have about this length, and less at bends. There is at least
+/// one sphere.
 ///
 /// # Errors
-/// [`TetError::Cancelled`], or a fault of the spheres.
+/// [`TetError::Cancelled`].
 pub fn hull(spheres: &[Sphere], margin: f64, side: f64, watch: &Watch) -> Result<TriMesh, TetError> {
-    let directions: Vec<Vec3> = sphere_surface(LEVEL).points.iter().map(|p| p.coords).collect();
-    let extremes: Vec<Sphere> = directions.par_iter().filter_map(|way| extreme(spheres, way)).collect();
+    let ways: Vec<Vec3> = sphere_surface(LEVEL).points.iter().map(|p| p.coords).collect();
+    let extremes: Vec<Sphere> = ways.par_iter().filter_map(|way| extreme(spheres, way)).collect();
     watch.ask()?;
-    let reached = |by: f64| directions.iter().zip(&extremes).map(move |(way, (p, r))| p + way * (r + by));
-    let inner = convex(reached(0.0).collect())?;
-    let planes: Vec<(Vec3, [Point3; 3])> = inner.triangles.iter().filter_map(|t| plane(&inner, t)).collect();
-    // Spheres between the directions may rise above.
-    let above = |(p, r): &Sphere| planes.iter().map(|(n, [a, ..])| n.dot(&(p - a)) + r).fold(0.0, f64::max);
-    let offset = margin + spheres.par_iter().map(above).reduce(|| 0.0, f64::max);
-    let flat = planes.iter().flat_map(|(n, corners)| corners.map(|p| p + n * offset));
-    let outer = convex(reached(offset).chain(flat).collect())?;
+    let body = Body::new(&ways, &extremes, margin);
+    let extent = Aabb::of_points(extremes.iter().map(|(p, _)| p)).diagonal();
+    // An edge of level n is about 1.1 / 2^n radii long.
+    let level = (1.1 * extent / margin).log2().ceil().clamp(LEVELS[0] as f64, LEVELS[1] as f64) as usize;
+    let mut surface = sphere_surface(level);
+    surface.points.par_iter_mut().for_each(|p| *p = body.exit(&p.coords));
     watch.ask()?;
-    let markers = vec![0; outer.triangles.len()];
-    let (surface, _) = remesh_closed(&outer, &markers, (Some(side), Some(TOLERANCE * margin)), watch)?;
+    let markers = vec![0; surface.triangles.len()];
+    let (surface, _) = remesh_closed(&surface, &markers, (Some(side), Some(TOLERANCE * margin)), watch)?;
     Ok(surface)
 }
 
@@ -50,28 +55,51 @@ fn extreme(spheres: &[Sphere], way: &Vec3) -> Option<Sphere> {
     spheres.iter().fold(None, further).map(|(_, sphere)| sphere)
 }
 
-/// Convex hull of points, oriented outwards.
-fn convex(mut points: Vec<Point3>) -> Result<TriMesh, TetError> {
-    // Negative zeros equal positive ones.
-    points.iter_mut().for_each(|p| *p += Vec3::zeros());
-    points.sort_unstable_by_key(|p| [p.x, p.y, p.z].map(f64::to_bits));
-    points.dedup();
-    let made = Tetrahedralizer::new().delaunay(&points)?;
-    Ok(super::inside::tidy(&TriMesh { points, triangles: made.faces }))
+/// Intersection of half-spaces.
+struct Body {
+    /// Point inside.
+    centre: Point3,
+    /// Outward normals with their distances from the centre.
+    planes: Vec<(Vec3, f64)>,
+    /// Map of the unit sphere to an ellipsoid as long and wide as the body, so that triangles are not stretched much.
+    shape: Matrix3<f64>,
 }
 
-/// Unit normal and corners of a triangle; `None` without area.
-fn plane(surface: &TriMesh, t: &[u32; 3]) -> Option<(Vec3, [Point3; 3])> {
-    let corners = t.map(|v| surface.points[v as usize]);
-    let [a, b, c] = corners;
-    let normal = (b - a).cross(&(c - a)).try_normalize(f64::MIN_POSITIVE)?;
-    Some((normal, corners))
+impl Body {
+    /// Half-spaces across some directions that hold the extreme spheres of these directions with a margin.
+    fn new(ways: &[Vec3], extremes: &[Sphere], margin: f64) -> Self {
+        let sum: Vec3 = extremes.iter().map(|(p, _)| p.coords).sum();
+        let centre = Point3::from(sum / extremes.len().max(1) as f64);
+        let reach = |way: &Vec3| {
+            let of = |(p, r): &Sphere| (p - centre).dot(way) + r;
+            margin + extremes.iter().map(of).fold(0.0, f64::max)
+        };
+        let covariance: Matrix3<f64> = extremes.iter().map(|(p, _)| (p - centre) * (p - centre).transpose()).sum();
+        let axes = covariance.symmetric_eigen().eigenvectors;
+        let widths = Vec3::from_fn(|i, _| {
+            let axis = axes.column(i).into_owned();
+            reach(&axis).midpoint(reach(&-axis))
+        });
+        let planes = ways.iter().map(|way| (*way, reach(way))).collect();
+        Self { centre, planes, shape: axes * Matrix3::from_diagonal(&widths) * axes.transpose() }
+    }
+
+    /// Place at which a ray from the centre leaves. `way` is a direction before the map to the ellipsoid.
+    fn exit(&self, way: &Vec3) -> Point3 {
+        let way = self.shape * way;
+        let at = |(normal, distance): &(Vec3, f64)| {
+            let slope = normal.dot(&way);
+            if slope > 0.0 { distance / slope } else { f64::INFINITY }
+        };
+        self.centre + way * self.planes.iter().map(at).fold(f64::INFINITY, f64::min)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::inside::Closed;
     use super::*;
+    use anastomesh_tet::Tetrahedralizer;
 
     /// Distance of the nearest sphere from a surface.
     fn clearance(surface: &TriMesh, spheres: &[Sphere]) -> f64 {
@@ -86,6 +114,12 @@ mod tests {
         spheres.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
+    /// Smallest angle of a triangle in degrees.
+    fn smallest_angle([a, b, c]: [Point3; 3]) -> f64 {
+        let at = |p: Point3, q: Point3, r: Point3| (q - p).angle(&(r - p)).to_degrees();
+        at(a, b, c).min(at(b, c, a)).min(at(c, a, b))
+    }
+
     #[test]
     fn hulls_are_closed_and_clear_by_the_margin() {
         let line: Vec<Sphere> = (0..9).map(|i| (Point3::new(f64::from(i), 0.0, 0.0), 0.3)).collect();
@@ -98,15 +132,12 @@ mod tests {
             let closed = Closed::new(&surface);
             assert!(spheres.iter().all(|(p, _)| closed.contains(p)));
             let clear = clearance(&surface, &spheres);
-            assert!((0.9..1.1).contains(&(clear / margin)), "{clear} {margin}");
+            assert!((0.9..1.2).contains(&(clear / margin)), "{clear} {margin}");
             let longest = surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
             let longest = longest.map(|e| (surface.points[e[0] as usize] - surface.points[e[1] as usize]).norm());
             assert!(longest.fold(0.0, f64::max) < 4.0 * margin);
+            let smallest = surface.triangles.iter().map(|t| smallest_angle(t.map(|v| surface.points[v as usize])));
+            assert!(smallest.fold(f64::INFINITY, f64::min) > 15.0);
         }
-    }
-
-    #[test]
-    fn no_spheres_have_no_hull() {
-        assert!(hull(&[], 1.0, 1.0, &Watch::NOBODY).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces around the tissue: the organ's surface, and those of regions in it.
 
 use super::error::DomainError;
-use super::hull::{Sphere, hull};
+use super::hull::{RATIO, Sphere, hull};
 use super::inside::{Closed, meeting, tidy};
 use super::nested::{check_nested, parents};
 use super::plan::{TissuePlan, TissueShape};
@@ -99,7 +99,11 @@ pub fn organ(plan: &TissuePlan, vessels: &Vessels, watch: &Watch) -> Result<TriM
         TissueShape::Hull { margin } => {
             let spheres: Vec<Sphere> = surface.points.iter().copied().zip(thickness.iter().copied()).collect();
             let margin = margin.unwrap_or_else(|| usual_margin(surface, outer));
-            let longest = (Aabb::of_points(&surface.points).diagonal() + 2.0 * margin) / SQUARES;
+            let extent = Aabb::of_points(&surface.points).diagonal();
+            if margin * RATIO < extent {
+                return Err(DomainError::Margin { margin, least: extent / RATIO });
+            }
+            let longest = (extent + 2.0 * margin) / SQUARES;
             let side = plan.size.unwrap_or(margin).max(longest);
             hull(&spheres, margin, side, watch).map_err(DomainError::Hull)
         }
