@@ -1,19 +1,20 @@
 //! Options for the regions around a lumen.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
-use anastomesh_domain::{DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh_domain::{DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
 use anastomesh_io::network::NetworkFormat;
 use anastomesh_io::surface::read_surface;
+use anastomesh_mesh::TriMesh;
 
 /// Options that need a lumen.
-const NOT_EMBEDDED: [&str; 21] = [
+const NOT_EMBEDDED: [&str; 23] = [
     "annulus",
     "as_is",
     "data",
@@ -33,6 +34,8 @@ const NOT_EMBEDDED: [&str; 21] = [
     "size_at",
     "split_regions",
     "stretch",
+    "tissue_region",
+    "tissue_remesh",
     "wall",
     "without",
 ];
@@ -58,7 +61,7 @@ pub struct DomainArgs {
     /// Further shell outside these, for example `adventitia=0.1r:2`; repeatable, from the inside outwards
     #[arg(long, value_name = "NAME=THICKNESS[:LAYERS]", value_parser = checked::<ShellArg>)]
     shell: Vec<String>,
-    /// Tissue around the vessels: box, box:MARGIN, or a closed surface
+    /// Tissue around the vessels: box, hull, box:MARGIN, hull:MARGIN, or a closed surface
     #[arg(long, value_name = "SHAPE", value_parser = checked::<TissueArg>)]
     tissue: Option<String>,
     /// Embed the vessels in the tissue as lines, for coupled 1D-3D models, instead of meshing them. Edges of the tissue are
@@ -74,6 +77,15 @@ pub struct DomainArgs {
     /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels
     #[arg(long, value_name = "G", default_value_t = TissuePlan::GROWTH, value_parser = number, requires = "around", allow_negative_numbers = true)]
     tissue_growth: f64,
+    /// Remesh the surfaces of tissue and regions to `--tissue-size`, or with even triangles of their own size
+    #[arg(long, requires = "tissue")]
+    tissue_remesh: bool,
+    /// Maximum distance between a surface and the remeshed one (default: 0.001 of the diagonal)
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "tissue_remesh", allow_negative_numbers = true)]
+    tissue_tolerance: Option<f64>,
+    /// Region of the tissue inside a closed surface, for example `tumour=tumour.stl`; repeatable
+    #[arg(long, value_name = "NAME=SURFACE", value_parser = checked::<RegionArg>, requires = "tissue")]
+    tissue_region: Vec<String>,
     /// Region to leave out of the result, for example lumen; repeatable
     #[arg(long, value_name = "REGION")]
     without: Vec<String>,
@@ -116,9 +128,17 @@ struct ShellArg {
     layered: LayeredArg,
 }
 
+/// Region of the tissue with a name.
+#[derive(Clone, Debug, PartialEq)]
+struct RegionArg {
+    name: String,
+    surface: PathBuf,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 enum TissueArg {
     Box(Option<f64>),
+    Hull(Option<f64>),
     Surface(PathBuf),
 }
 
@@ -171,16 +191,29 @@ impl FromStr for ShellArg {
     }
 }
 
+impl FromStr for RegionArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, surface)) if !surface.is_empty() => Ok(Self { name: name.into(), surface: surface.into() }),
+            _ => Err(format!("'{text}' has no name or no surface: give NAME=SURFACE")),
+        }
+    }
+}
+
 impl FromStr for TissueArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.strip_prefix("box") {
-            Some("") => Ok(Self::Box(None)),
-            Some(rest) if rest.starts_with(':') => {
-                let margin = rest[1..].parse().map_err(|_| format!("'{}' is not a margin", &rest[1..]))?;
-                Ok(Self::Box(Some(margin)))
-            }
+        let (shape, margin) = text.split_once(':').map_or((text, None), |(shape, margin)| (shape, Some(margin)));
+        let margin = || {
+            let read = |margin: &str| margin.parse().map_err(|_| format!("'{margin}' is not a margin"));
+            margin.map(read).transpose()
+        };
+        match shape {
+            "box" => Ok(Self::Box(margin()?)),
+            "hull" => Ok(Self::Hull(margin()?)),
             _ => Ok(Self::Surface(text.into())),
         }
     }
@@ -252,7 +285,10 @@ impl DomainArgs {
     }
 
     fn tissue(&self, shape: TissueArg) -> Result<TissuePlan, Failure> {
-        Ok(TissuePlan::new(shape.shape()?).size(self.tissue_size).growth(self.tissue_growth))
+        let regions: Result<_, Failure> =
+            self.tissue_region.iter().map(|text| read::<RegionArg>(text)?.region()).collect();
+        let tissue = TissuePlan::new(shape.shape()?).size(self.tissue_size).growth(self.tissue_growth);
+        Ok(tissue.remesh(self.tissue_remesh).tolerance(self.tissue_tolerance).regions(regions?))
     }
 
     /// True if vessels are embedded in tissue instead of being meshed.
@@ -290,7 +326,12 @@ impl DomainArgs {
             self.tissue_size.iter().for_each(|size| add("tissue-size", size));
             add("tissue-growth", &self.tissue_growth);
         }
+        self.tissue_tolerance.iter().for_each(|tolerance| add("tissue-tolerance", tolerance));
+        self.tissue_region.iter().for_each(|region| add("tissue-region", region));
         self.without.iter().for_each(|region| add("without", region));
+        if self.tissue_remesh {
+            words.push(" --tissue-remesh".into());
+        }
         if self.embed {
             add("embed-size", &self.embed_size);
             words.push(" --embed".into());
@@ -310,11 +351,20 @@ impl TissueArg {
     fn shape(self) -> Result<TissueShape, Failure> {
         match self {
             Self::Box(margin) => Ok(TissueShape::Box { margin }),
-            Self::Surface(path) => {
-                Ok(TissueShape::Organ(read_surface(&path).map_err(|e| Failure::input(e.to_string()))?))
-            }
+            Self::Hull(margin) => Ok(TissueShape::Hull { margin }),
+            Self::Surface(path) => Ok(TissueShape::Organ(surface(&path)?)),
         }
     }
+}
+
+impl RegionArg {
+    fn region(self) -> Result<TissueRegion, Failure> {
+        Ok(TissueRegion::new(self.name, surface(&self.surface)?))
+    }
+}
+
+fn surface(path: &Path) -> Result<TriMesh, Failure> {
+    read_surface(path).map_err(|e| Failure::input(e.to_string()))
 }
 
 #[cfg(test)]
@@ -336,6 +386,11 @@ mod tests {
         assert!("0.1r".parse::<ShellArg>().is_err() && "a=0.1r:x".parse::<ShellArg>().is_err());
         assert_eq!("box:2.5".parse(), Ok(TissueArg::Box(Some(2.5))));
         assert_eq!("organ.stl".parse(), Ok(TissueArg::Surface("organ.stl".into())));
-        assert!("box:wide".parse::<TissueArg>().is_err());
+        assert_eq!("hull".parse(), Ok(TissueArg::Hull(None)));
+        assert_eq!("boxes/organ.stl".parse(), Ok(TissueArg::Surface("boxes/organ.stl".into())));
+        assert!("box:wide".parse::<TissueArg>().is_err() && "hull:".parse::<TissueArg>().is_err());
+        let region: RegionArg = "tumour=a=b.stl".parse().expect("a region");
+        assert_eq!((region.name.as_str(), region.surface), ("tumour", PathBuf::from("a=b.stl")));
+        assert!("tumour.stl".parse::<RegionArg>().is_err() && "tumour=".parse::<RegionArg>().is_err());
     }
 }

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 64] = [
+const RARE: [&str; 67] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -65,7 +65,10 @@ const RARE: [&str; 64] = [
     "split-regions",
     "stretch",
     "tissue-growth",
+    "tissue-region",
+    "tissue-remesh",
     "tissue-size",
+    "tissue-tolerance",
     "to",
     "uniform",
     "version",

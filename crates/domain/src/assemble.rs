@@ -1,69 +1,17 @@
 //! One mesh of lumen, shells and tissue, with names for its regions, interfaces and outer boundaries.
 //!
-//! Points are those of the lumen, then those of the shells, then those of the organ's surface and inside the tissue.
+//! Points are those of the lumen, then those of the shells, then those of the surfaces around the tissue, then those inside
+//! each of its regions.
 
+use super::layout::Layout;
 use super::plan::DomainPlan;
-use super::surface::LumenSurface;
 use super::without::without;
-use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::{NamedRegion, Patch, TetMesh, TriMesh, VolumeMesh, WALL};
-use anastomesh_tet::Shells;
+use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh, WALL};
+use anastomesh_tet::Tetrahedralization;
 use std::collections::BTreeMap;
 
 /// Region inside the vessels.
 const LUMEN_ID: i32 = 1;
-
-/// Lumen and shells, and the surface that the tissue fills.
-pub struct Layout<'a> {
-    lumen: &'a LumenSurface,
-    shells: &'a Shells,
-    /// Boundary of the tissue with its own points.
-    outside: TriMesh,
-    /// Points of `outside` on the vessels, in the numbers of lumen surface and shells.
-    on_vessels: Vec<u32>,
-    /// Triangles of the organ's surface, which come last in `outside`.
-    of_organ: usize,
-}
-
-impl<'a> Layout<'a> {
-    pub fn new(lumen: &'a LumenSurface, shells: &'a Shells, organ: Option<&TriMesh>) -> Self {
-        let count = lumen.surface.points.len();
-        let capped = lumen.surface.triangles.iter().zip(&lumen.caps);
-        let own = |is_cap: bool| capped.clone().filter(move |(_, cap)| cap.is_some() == is_cap).map(|(t, _)| *t);
-        let mut triangles: Vec<[u32; 3]> = match shells.sides.last() {
-            Some(outer) => outer.clone(),
-            None => own(false).collect(),
-        };
-        triangles.extend(own(true));
-        triangles.extend(shells.rings.iter().flat_map(|ring| &ring.triangles));
-        let mut on_vessels = triangles.as_flattened().to_vec();
-        on_vessels.sort_unstable();
-        on_vessels.dedup();
-        let mut number = vec![u32::MAX; count + shells.points.len()];
-        (0..).zip(&on_vessels).for_each(|(i, &v)| number[v as usize] = i);
-        for t in &mut triangles {
-            *t = t.map(|v| number[v as usize]);
-        }
-        let place = |&v: &u32| match (v as usize).checked_sub(count) {
-            Some(i) => shells.points[i],
-            None => lumen.surface.points[v as usize],
-        };
-        let mut points: Vec<Point3> = on_vessels.iter().map(place).collect();
-        let mut of_organ = 0;
-        if let Some(organ) = organ {
-            let first = points.len() as u32;
-            points.extend_from_slice(&organ.points);
-            triangles.extend(organ.triangles.iter().map(|t| t.map(|v| v + first)));
-            of_organ = organ.triangles.len();
-        }
-        Self { lumen, shells, outside: TriMesh { points, triangles }, on_vessels, of_organ }
-    }
-
-    /// Boundary of the tissue.
-    pub fn outside(&self) -> &TriMesh {
-        &self.outside
-    }
-}
 
 /// Faces with their patches.
 #[derive(Default)]
@@ -78,23 +26,31 @@ struct Labelled {
 impl Labelled {
     /// Adds faces under a region to a patch.
     fn add(&mut self, name: &str, region: i32, faces: impl IntoIterator<Item = [u32; 3]>) {
-        let next = self.list.iter().map(|patch| patch.id).max().unwrap_or(0) + 1;
-        let id = *self.names.entry(name.to_owned()).or_insert(next);
         let before = self.faces.len();
         self.faces.extend(faces);
-        if id == next && self.faces.len() > before {
+        if self.faces.len() > before {
+            let id = self.patch(name);
+            self.patches.resize(self.faces.len(), id);
+            self.regions.resize(self.faces.len(), region);
+        }
+    }
+
+    /// Id of the patch with this name, which is added if there is none.
+    fn patch(&mut self, name: &str) -> i32 {
+        let next = self.list.iter().map(|patch| patch.id).max().unwrap_or(0) + 1;
+        let id = *self.names.entry(name.to_owned()).or_insert(next);
+        if id == next {
             self.list.push(Patch { id, name: name.to_owned(), cap: None });
         }
-        self.patches.resize(self.faces.len(), id);
-        self.regions.resize(self.faces.len(), region);
+        id
     }
 }
 
-/// Assembles the mesh; returns it with the ids and names of its regions.
+/// Assembles the mesh; returns it with the ids and names of its regions. `tissue` has the regions around the vessels.
 pub fn assemble(
     lumen: VolumeMesh,
     layout: &Layout,
-    tissue: Option<&TetMesh>,
+    tissue: &[Tetrahedralization],
     plan: &DomainPlan,
 ) -> (VolumeMesh, Vec<NamedRegion>) {
     let regions: Vec<NamedRegion> =
@@ -106,7 +62,7 @@ pub fn assemble(
         None => surface.points[v as usize],
     };
     let mut mesh = lumen.mesh;
-    let more = tissue.map_or(0, |tissue| tissue.tets.len());
+    let more: usize = tissue.iter().map(|region| region.mesh.tets.len()).sum();
     mesh.tets.reserve_exact(shells.tets.len() + more);
     let mut tet_block = Vec::with_capacity(mesh.tets.capacity());
     tet_block.resize(mesh.tets.len(), LUMEN_ID);
@@ -114,35 +70,56 @@ pub fn assemble(
     mesh.tets.extend(shells.tets.iter().map(|t| t.map(in_mesh)));
     tet_block.extend(shells.shell_of.iter().map(|&shell| LUMEN_ID + 1 + shell as i32));
     let tissue_id = LUMEN_ID + 1 + plan.shells.len() as i32;
-    let last = mesh.points.len() as u32;
-    let vessels = layout.on_vessels.len() as u32;
-    let of_tissue = |v: u32| match v.checked_sub(vessels) {
-        Some(i) => last + i,
-        None => in_mesh(layout.on_vessels[v as usize]),
-    };
-    if let Some(tissue) = tissue {
-        mesh.points.extend_from_slice(&tissue.points[vessels as usize..]);
-        mesh.tets.extend(tissue.tets.iter().map(|t| t.map(of_tissue)));
-        tet_block.resize(mesh.tets.len(), tissue_id);
+    mesh.points.extend(layout.around.iter().flat_map(|around| &around.surfaces).flat_map(|surface| &surface.points));
+    for ((id, region), outside) in (tissue_id..).zip(tissue).zip(&layout.outsides) {
+        let (given, last) = (outside.numbers.len(), mesh.points.len() as u32);
+        let of_region = |v: u32| match v.checked_sub(given as u32) {
+            Some(i) => last + i,
+            None => in_mesh(outside.numbers[v as usize]),
+        };
+        mesh.points.extend_from_slice(&region.mesh.points[given..]);
+        mesh.tets.extend(region.mesh.tets.iter().map(|t| t.map(of_region)));
+        tet_block.resize(mesh.tets.len(), id);
     }
 
     let mut faces = Labelled { list: lumen.patches, ..Labelled::default() };
     let name_of = |region: i32| regions[(region - LUMEN_ID) as usize].name.as_str();
-    let beyond = |region: i32| regions.get((region + 1 - LUMEN_ID) as usize).map(|next| next.name.as_str());
-    let side = |region: i32| match (beyond(region), region) {
-        (Some(next), _) => format!("interface_{}_{next}", name_of(region)),
-        (None, LUMEN_ID) => "wall".to_owned(),
-        (None, _) => format!("{}_outer", name_of(region)),
+    let last = LUMEN_ID + plan.shells.len() as i32;
+    // Outer side of a lumen or shell in the region of a surface.
+    let side = |region: i32, home: usize| match region {
+        _ if region < last => format!("interface_{}_{}", name_of(region), name_of(region + 1)),
+        _ if !tissue.is_empty() => format!("interface_{}_{}", name_of(region), name_of(tissue_id + home as i32)),
+        LUMEN_ID => "wall".to_owned(),
+        _ => format!("{}_outer", name_of(region)),
     };
     // Walls keep their id, and caps keep theirs with their names.
     if let Some(wall) = faces.list.iter_mut().find(|patch| patch.id == WALL) {
-        wall.name = side(LUMEN_ID);
+        wall.name = side(LUMEN_ID, 0);
+    }
+    faces.patches = lumen.boundary_patch;
+    if shells.sides.is_empty() {
+        for (patch, t) in faces.patches.iter_mut().zip(&surface.surface.triangles) {
+            let home = layout.home(t[0]);
+            if *patch == WALL && home > 0 {
+                *patch = -(home as i32);
+            }
+        }
+        for home in 1..tissue.len() {
+            let marked = -(home as i32);
+            if faces.patches.contains(&marked) {
+                let id = faces.patch(&side(LUMEN_ID, home));
+                faces.patches.iter_mut().filter(|patch| **patch == marked).for_each(|patch| *patch = id);
+            }
+        }
     }
     faces.faces = lumen.boundary;
-    faces.patches = lumen.boundary_patch;
     faces.regions = vec![LUMEN_ID; faces.faces.len()];
     for (region, triangles) in (LUMEN_ID + 1..).zip(&shells.sides) {
-        faces.add(&side(region), region, triangles.iter().map(|t| t.map(in_mesh)));
+        let homes = if region == last { tissue.len().max(1) } else { 1 };
+        for home in 0..homes {
+            let own = triangles.iter().filter(|t| homes == 1 || layout.home(t[0]) == home);
+            faces.add(&side(region, home), region, own.map(|t| t.map(in_mesh)));
+        }
     }
     let cap_names: BTreeMap<i32, String> = faces.list.iter().map(|patch| (patch.id, patch.name.clone())).collect();
     for ring in &shells.rings {
@@ -152,9 +129,25 @@ pub fn assemble(
             if shells.sides.len() == 1 { format!("ring_{cap}") } else { format!("ring_{}_{cap}", name_of(region)) };
         faces.add(&name, region, ring.triangles.iter().map(|t| t.map(in_mesh)));
     }
-    if tissue.is_some() {
-        let organ = &layout.outside.triangles[layout.outside.triangles.len() - layout.of_organ..];
-        faces.add("organ", tissue_id, organ.iter().map(|t| t.map(of_tissue)));
+    for (k, (region, outside)) in tissue.iter().zip(&layout.outsides).enumerate() {
+        let id = tissue_id + k as i32;
+        for (i, range) in &outside.of_surfaces {
+            // The other side of the surface, which is outside for the first.
+            let beyond = if *i == k { layout.around.map_or(0, |around| around.parents[*i]) } else { *i };
+            let name = match (k, *i) {
+                (0, 0) => "organ".to_owned(),
+                // The region with the smaller id lists the face.
+                _ if beyond < k => continue,
+                _ => format!("interface_{}_{}", name_of(id), name_of(tissue_id + beyond as i32)),
+            };
+            // Faces of a filled region face out of it.
+            let own = region.faces[range.clone()].iter();
+            faces.add(&name, id, own.map(|t| t.map(|v| in_mesh(outside.numbers[v as usize]))));
+        }
+    }
+    if tissue.len() > 1 {
+        let used = &faces.patches;
+        faces.list.retain(|patch| used.contains(&patch.id));
     }
     let Labelled { faces, patches: boundary_patch, regions: boundary_block, list, .. } = faces;
     let volume = VolumeMesh { mesh, tet_block, boundary: faces, boundary_block, boundary_patch, patches: list };

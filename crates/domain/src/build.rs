@@ -1,9 +1,10 @@
 //! Regions around a lumen: shells, then tissue, then one mesh of all.
 
-use super::assemble::{Layout, assemble};
+use super::assemble::assemble;
 use super::error::DomainError;
-use super::organ::{check_organ, organ};
-use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan, TissueShape};
+use super::layout::Layout;
+use super::organ::{Surroundings, Vessels};
+use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan};
 use super::surface::LumenSurface;
 use super::unfold::unfold;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
@@ -11,7 +12,7 @@ use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::{Skeleton, Tubes};
 use anastomesh_tet::parts::{Watch, fill_spaced};
-use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, TetMesh, Tetrahedralizer};
+use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, Tetrahedralization, Tetrahedralizer};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -62,20 +63,21 @@ impl Domain {
         let mut surface = LumenSurface::of(&lumen);
         let moved = if plan.shells.is_empty() { 0 } else { unfold(&mut lumen.mesh, &mut surface) };
         let sites = sites(&surface.surface, network);
-        let outer = |site: &Site| site.radius + plan.shells.iter().map(|shell| shell.thickness.at(site)).sum::<f64>();
-        let largest = sites.iter().map(outer).fold(0.0, f64::max);
-        let around = plan.tissue.as_ref().map(|tissue| organ(tissue, &surface.surface, largest)).transpose()?;
-        let shells = shells(&surface, &sites, &plan.shells, around.as_ref(), progress)?;
+        let thickness: Vec<f64> = sites.iter().map(|site| plan.thickness(site)).collect();
+        let outer = sites.iter().zip(&thickness).map(|(site, own)| site.radius + own).fold(0.0, f64::max);
+        let vessels = Vessels { surface: &surface.surface, thickness: &thickness, outer };
+        let watch = Watch::asking(progress);
+        let around = plan.tissue.as_ref().map(|tissue| Surroundings::of(tissue, &vessels, &watch)).transpose()?;
+        let obstacles = around.as_ref().map(Surroundings::joined);
+        let shells = shells(&surface, &sites, &plan.shells, obstacles.as_ref(), progress)?;
         let report = (!plan.shells.is_empty()).then(|| ShellsReport { moved, ..report(&shells, &surface) });
         let layout = Layout::new(&surface, &shells, around.as_ref());
-        let tissue = match &plan.tissue {
-            Some(plan) => Some(fill(plan, layout.outside(), progress)?),
-            None => None,
-        };
-        let (mesh, regions) = assemble(lumen, &layout, tissue.as_ref(), plan);
+        let fill = |tissue| layout.outsides().map(|outside| fill(tissue, outside, progress)).collect();
+        let tissue: Vec<Tetrahedralization> = plan.tissue.as_ref().map_or(Ok(Vec::new()), fill)?;
+        let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);
         // The check needs about as much memory as they do.
         drop(layout);
-        drop((tissue, shells, surface, around));
+        drop((tissue, shells, surface, around, obstacles));
         progress.at(Stage::Check, 0, 0);
         let check = check_regions(&mesh, &regions, Some(expectation));
         Ok(Self { mesh, regions, shells: report, check })
@@ -83,16 +85,9 @@ impl Domain {
 }
 
 impl DomainPlan {
-    /// Checks names, ranges, and that the tissue's surface contains a network. `name` is the name of a node in the file.
-    ///
-    /// # Errors
-    /// The first fault.
-    pub fn check(&self, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
-        self.validate()?;
-        match &self.tissue {
-            Some(TissuePlan { shape: TissueShape::Organ(surface), .. }) => check_organ(surface, network, false, name),
-            _ => Ok(()),
-        }
+    /// Thickness of all shells together at a place.
+    pub(super) fn thickness(&self, site: &Site) -> f64 {
+        self.shells.iter().map(|shell| shell.thickness.at(site)).sum()
     }
 }
 
@@ -153,11 +148,11 @@ fn report(shells: &Shells, lumen: &LumenSurface) -> ShellsReport {
     }
 }
 
-/// Fills the tissue. The points of its mesh begin with those of the surface.
-fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result<TetMesh, DomainError> {
+/// Fills a region of the tissue. The points of its mesh begin with those of the surface.
+fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result<Tetrahedralization, DomainError> {
     let mut filler = Tetrahedralizer::new().interior(Interior::Growing { growth: plan.growth });
     if let Some(size) = plan.size {
         filler = filler.sizing(Sizing::Constant(size));
     }
-    Ok(fill_spaced(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)?.mesh)
+    fill_spaced(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)
 }

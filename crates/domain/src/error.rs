@@ -26,7 +26,7 @@ pub enum DomainError {
     #[error("the surface around the tissue cannot be filled: {0}")]
     Organ(TetError),
     /// Nodes of the network lie outside the organ's surface.
-    #[error("{} outside the surface around the tissue, first node {node} at {}: give a surface around all vessels", lie(*count), place(*at))]
+    #[error("{} outside the surface around the tissue, first node {node} at {}: give a surface around all vessels", lie(*count, "node"), place(*at))]
     NodesOutside {
         /// Number of nodes.
         count: usize,
@@ -61,6 +61,95 @@ pub enum DomainError {
         /// Place of the first.
         at: [f64; 3],
     },
+    /// The margin of a box is within the shells.
+    #[error(
+        "no space for tissue: the margin {margin} of the box is within the shells, whose thickness is up to {thickness}: give a wider margin"
+    )]
+    NoSpace {
+        /// Margin.
+        margin: f64,
+        /// Largest thickness of all shells together.
+        thickness: f64,
+    },
+    /// The margin of a hull is too small for its triangles.
+    #[error("the margin {margin} of the hull is too small for the extent of the vessels: give at least {least:.2e}")]
+    Margin {
+        /// Margin.
+        margin: f64,
+        /// Minimum.
+        least: f64,
+    },
+    /// The hull of the vessels cannot be made.
+    #[error("the hull of the vessels cannot be made: {0}")]
+    Hull(TetError),
+    /// Surfaces cannot be remeshed.
+    #[error("the surfaces of the tissue cannot be remeshed: {0}")]
+    Remesh(TetError),
+    /// The surface of a region in the tissue is not closed, or intersects itself.
+    #[error("the surface of {region} cannot be filled: {source}")]
+    Region {
+        /// Name of the region.
+        region: String,
+        /// Reason.
+        source: TetError,
+    },
+    /// A region reaches out of the organ.
+    #[error(
+        "in {region}, {} outside the surface around the tissue, first at {}: give a region inside, or a larger surface",
+        lie(*count, "point"), place(*at)
+    )]
+    RegionOutside {
+        /// Name of the region.
+        region: String,
+        /// Number of points outside.
+        count: usize,
+        /// The first.
+        at: [f64; 3],
+    },
+    /// Two surfaces in the tissue touch.
+    #[error(
+        "the surfaces of {} and {} meet at {}, first at {}: give surfaces that do not touch",
+        regions[0], regions[1], counted(*count, "triangle"), place(*at)
+    )]
+    SurfacesMeet {
+        /// Names of the regions.
+        regions: [String; 2],
+        /// Number of triangles of the second.
+        count: usize,
+        /// Place of the first.
+        at: [f64; 3],
+    },
+    /// Vessels of the network cross a surface in the tissue.
+    #[error(
+        "{} through the surface of {region}, first between nodes {} and {} at {}: {}",
+        pass(*count), nodes[0], nodes[1], place(*at),
+        if *is_organ { "shorten the vessels, or give a surface around all of them" } else { "move the surface, so that each vessel lies inside or outside" }
+    )]
+    VesselsCross {
+        /// Name of the region inside the surface.
+        region: String,
+        /// True for the surface around the tissue.
+        is_organ: bool,
+        /// Number of edges of the network.
+        count: usize,
+        /// Names of the ends of the first in the file.
+        nodes: [String; 2],
+        /// Place on the surface.
+        at: [f64; 3],
+    },
+    /// The vessels' wall meets the surface of a region.
+    #[error(
+        "{} of the vessels' wall meet the surface of {region}, first at {}: move the surface, so that each vessel lies inside or outside",
+        counted(*count, "triangle"), place(*at)
+    )]
+    VesselsMeet {
+        /// Name of the region.
+        region: String,
+        /// Number of triangles of the wall.
+        count: usize,
+        /// Place of the first.
+        at: [f64; 3],
+    },
     /// The tissue cannot be filled.
     #[error("the tissue could not be filled: {0}")]
     Tissue(TetError),
@@ -69,8 +158,12 @@ pub enum DomainError {
     Pieces(#[from] PiecesError),
 }
 
-fn lie(count: usize) -> String {
-    format!("{} lie{}", counted(count, "node"), if count == 1 { "s" } else { "" })
+fn lie(count: usize, what: &str) -> String {
+    format!("{} {}", counted(count, what), if count == 1 { "lies" } else { "lie" })
+}
+
+fn pass(count: usize) -> String {
+    format!("{} {}", counted(count, "vessel"), if count == 1 { "passes" } else { "pass" })
 }
 
 fn leave(count: usize) -> String {
@@ -81,7 +174,12 @@ impl DomainError {
     /// True if the caller cancelled the run.
     pub fn is_cancelled(&self) -> bool {
         match self {
-            Self::Shell { source, .. } | Self::Organ(source) | Self::Tissue(source) => *source == TetError::Cancelled,
+            Self::Shell { source, .. }
+            | Self::Region { source, .. }
+            | Self::Organ(source)
+            | Self::Hull(source)
+            | Self::Remesh(source)
+            | Self::Tissue(source) => *source == TetError::Cancelled,
             Self::Pieces(source) => *source == PiecesError::Cancelled,
             _ => false,
         }

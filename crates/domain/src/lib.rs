@@ -15,16 +15,21 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`] |
+//! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`], [`TissueRegion`] |
 //! | carry out the plan | [`Domain::around`] |
 //! | embed vessels as lines in tissue | [`EmbedPlan`], [`Embedding`], [`Pieces`] |
 //!
 //! The crate has no features.
 
 mod assemble;
+mod before;
 mod build;
 mod embed;
 mod error;
+mod hull;
+mod inside;
+mod layout;
+mod nested;
 mod organ;
 mod plan;
 mod surface;
@@ -34,7 +39,7 @@ mod without;
 pub use build::{Domain, ShellsReport};
 pub use embed::{EmbedPlan, Embedding, Piece, PieceFault, Pieces, PiecesError};
 pub use error::DomainError;
-pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
+pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
 
 /// The example of the README is a test.
 #[cfg(doctest)]

@@ -1,67 +1,150 @@
-//! Surface around the tissue.
+//! Surfaces around the tissue: the organ's surface, and those of regions in it.
 
 use super::error::DomainError;
+use super::hull::{RATIO, Sphere, hull};
+use super::inside::{Closed, meeting, tidy};
+use super::nested::{check_nested, parents};
 use super::plan::{TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::predicates::{orient2d, orient3d};
-use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Vec3, crossing, self_intersections};
-use anastomesh_skeleton::{Edge, NodeId, Skeleton};
-use anastomesh_tet::Tetrahedralizer;
-use rayon::prelude::*;
+use anastomesh_mesh::geometry::{Aabb, Point3, Vec3};
+use anastomesh_tet::parts::{Watch, remesh_closed};
 use rustc_hash::FxHashMap;
 
-/// Margin of a box, relative to the diagonal of the vessels.
+/// Margin of a box or hull, relative to the diagonal of the vessels.
 const MARGIN: f64 = 0.05;
-/// Maximum number of squares along the diagonal of a box.
+/// Maximum number of edges along the diagonal of a box or hull.
 const SQUARES: f64 = 40.0;
 
-/// Surface around the tissue. `outer` is the largest outer radius of a vessel.
-pub fn organ(plan: &TissuePlan, vessels: &TriMesh, outer: f64) -> Result<TriMesh, DomainError> {
+/// Vessels, or their network before it is meshed.
+pub struct Vessels<'a> {
+    /// Surface of the lumen. It may lack triangles.
+    pub surface: &'a TriMesh,
+    /// Thickness of the shells at each point.
+    pub thickness: &'a [f64],
+    /// Largest outer radius.
+    pub outer: f64,
+}
+
+/// Surfaces around the tissue.
+pub struct Surroundings {
+    /// Surface of the organ, then those of the regions in it, outwards.
+    pub surfaces: Vec<TriMesh>,
+    /// Surface that directly contains each; 0 for the first.
+    pub parents: Vec<usize>,
+}
+
+impl Surroundings {
+    /// Surfaces around vessels, which they do not touch.
+    pub fn of(plan: &TissuePlan, vessels: &Vessels, watch: &Watch) -> Result<Self, DomainError> {
+        let mut surfaces = vec![organ(plan, vessels, watch)?];
+        surfaces.extend(plan.regions.iter().map(|region| tidy(&region.surface)));
+        if plan.remesh {
+            // A box or hull has its size already.
+            let given = usize::from(!matches!(plan.shape, TissueShape::Organ(_)));
+            remesh(&mut surfaces[given..], (plan.size, plan.tolerance), watch)?;
+        }
+        holds(&surfaces[0], vessels.surface)?;
+        check_nested(&surfaces, plan)?;
+        for (surface, region) in surfaces[1..].iter().zip(&plan.regions) {
+            let met = meeting(vessels.surface, surface);
+            if let Some(&t) = met.first() {
+                let at = first_corner(vessels.surface, vessels.surface.triangles[t as usize]);
+                return Err(DomainError::VesselsMeet { region: region.name.clone(), count: met.len(), at });
+            }
+        }
+        let parents = parents(&surfaces);
+        Ok(Self { surfaces, parents })
+    }
+
+    /// All surfaces as one.
+    pub fn joined(&self) -> TriMesh {
+        joined(&self.surfaces).0
+    }
+
+    /// Innermost surface around each of some points.
+    pub fn homes(&self, points: &[Point3]) -> Vec<usize> {
+        let mut homes = vec![0; points.len()];
+        let depth = |mut i: usize| {
+            let mut depth = 0;
+            while i != 0 {
+                (i, depth) = (self.parents[i], depth + 1);
+            }
+            depth
+        };
+        for (i, surface) in self.surfaces.iter().enumerate().skip(1) {
+            let closed = Closed::new(surface);
+            for (home, p) in homes.iter_mut().zip(points) {
+                if closed.contains(p) && depth(i) > depth(*home) {
+                    *home = i;
+                }
+            }
+        }
+        homes
+    }
+}
+
+/// Surface of the organ.
+pub fn organ(plan: &TissuePlan, vessels: &Vessels, watch: &Watch) -> Result<TriMesh, DomainError> {
+    let Vessels { surface, thickness, outer } = *vessels;
     match &plan.shape {
-        TissueShape::Box { margin } => Ok(box_around(vessels, *margin, outer, plan.size)),
-        TissueShape::Organ(surface) => {
-            let surface = outward(surface.clone());
-            holds(&surface, vessels)?;
-            Ok(surface)
+        TissueShape::Organ(surface) => Ok(tidy(surface)),
+        TissueShape::Box { margin } => {
+            let margin = margin.unwrap_or_else(|| usual_margin(surface, outer));
+            let thickest = thickness.iter().copied().fold(0.0, f64::max);
+            if margin <= thickest {
+                return Err(DomainError::NoSpace { margin, thickness: thickest });
+            }
+            Ok(box_around(surface, margin, plan.size))
+        }
+        TissueShape::Hull { margin } => {
+            let spheres: Vec<Sphere> = surface.points.iter().copied().zip(thickness.iter().copied()).collect();
+            let margin = margin.unwrap_or_else(|| usual_margin(surface, outer));
+            let extent = Aabb::of_points(&surface.points).diagonal();
+            if margin * RATIO < extent {
+                return Err(DomainError::Margin { margin, least: extent / RATIO });
+            }
+            let longest = (extent + 2.0 * margin) / SQUARES;
+            let side = plan.size.unwrap_or(margin).max(longest);
+            hull(&spheres, margin, side, watch).map_err(DomainError::Hull)
         }
     }
 }
 
-/// Checks before meshing that an organ's surface is closed and contains the nodes of a network. `closed`: nodes exactly on
-/// the surface are inside.
-pub fn check_organ(
-    organ: &TriMesh,
-    network: &Skeleton,
-    closed: bool,
-    name: &dyn Fn(u32) -> String,
-) -> Result<(), DomainError> {
-    Tetrahedralizer::new().check(organ).map_err(DomainError::Organ)?;
-    let vessels = axes(network);
-    let outside = outside(organ, &vessels, closed);
-    match outside.first() {
-        Some(&[v, ..]) => {
-            let at = vessels.points[v as usize].coords.into();
-            Err(DomainError::NodesOutside { count: outside.len(), node: name(network.nodes[v as usize].original), at })
-        }
-        None => Ok(()),
-    }
+/// Default margin. Shells take a part of the space.
+pub fn usual_margin(vessels: &TriMesh, outer: f64) -> f64 {
+    (MARGIN * Aabb::of_points(&vessels.points).diagonal()).max(outer)
 }
 
-/// Nodes of a network, each with a triangle of its own.
-pub fn axes(network: &Skeleton) -> TriMesh {
-    let points = network.nodes.iter().map(|node| node.position).collect();
-    TriMesh { points, triangles: (0..network.nodes.len() as u32).map(|v| [v; 3]).collect() }
-}
-
-pub fn box_around(vessels: &TriMesh, margin: Option<f64>, outer: f64, size: Option<f64>) -> TriMesh {
+pub fn box_around(vessels: &TriMesh, margin: f64, size: Option<f64>) -> TriMesh {
     let inner = Aabb::of_points(&vessels.points);
-    let diagonal = (inner.max - inner.min).norm();
-    // Shells take a part of the space.
-    let margin = margin.unwrap_or_else(|| (MARGIN * diagonal).max(outer));
     let [low, high] = [inner.min - Vec3::repeat(margin), inner.max + Vec3::repeat(margin)];
     let longest = (high - low).norm() / SQUARES;
     let side = size.unwrap_or_else(|| margin.max(longest)).max(longest);
     grid_box(low, high, side)
+}
+
+/// Surfaces as one, and the number of the surface of each triangle.
+fn joined(surfaces: &[TriMesh]) -> (TriMesh, Vec<i32>) {
+    let (mut all, mut numbers) = (TriMesh::default(), Vec::new());
+    for (i, surface) in (0..).zip(surfaces) {
+        let first = all.points.len() as u32;
+        all.points.extend_from_slice(&surface.points);
+        all.triangles.extend(surface.triangles.iter().map(|t| t.map(|v| v + first)));
+        numbers.resize(all.triangles.len(), i);
+    }
+    (all, numbers)
+}
+
+/// Remeshes surfaces together, so that they stay apart, with an edge length and a tolerance.
+fn remesh(surfaces: &mut [TriMesh], by: (Option<f64>, Option<f64>), watch: &Watch) -> Result<(), DomainError> {
+    let (all, numbers) = joined(surfaces);
+    let (made, numbers) = remesh_closed(&all, &numbers, by, watch).map_err(DomainError::Remesh)?;
+    for (i, surface) in (0..).zip(surfaces) {
+        let own = made.triangles.iter().zip(&numbers).filter(|(_, number)| **number == i);
+        let triangles = own.map(|(t, _)| *t).collect();
+        *surface = tidy(&TriMesh { points: made.points.clone(), triangles });
+    }
+    Ok(())
 }
 
 /// Box whose sides are divided into squares of about this side, each of two triangles.
@@ -102,110 +185,24 @@ fn grid_box(low: Point3, high: Point3, side: f64) -> TriMesh {
     mesh
 }
 
-/// The surface oriented outwards as a whole.
-pub fn outward(mut surface: TriMesh) -> TriMesh {
-    let Some(&from) = surface.points.first() else { return surface };
-    let volume: f64 = surface
-        .triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|v| surface.points[v as usize] - from);
-            a.cross(&b).dot(&c)
-        })
-        .sum();
-    if volume < 0.0 {
-        surface.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-    surface
+fn first_corner(surface: &TriMesh, t: [u32; 3]) -> [f64; 3] {
+    surface.points[t[0] as usize].coords.into()
 }
 
 /// Checks that vessels lie inside a closed surface and do not touch it.
 fn holds(organ: &TriMesh, vessels: &TriMesh) -> Result<(), DomainError> {
-    let place = |t: [u32; 3]| vessels.points[t[0] as usize].coords.into();
-    let first = vessels.points.len() as u32;
-    let wall = vessels.triangles.len() as u32;
-    let mut all = vessels.clone();
-    all.points.extend_from_slice(&organ.points);
-    all.triangles.extend(organ.triangles.iter().map(|t| t.map(|v| v + first)));
-    let mut meeting: Vec<u32> = self_intersections(&all.points, &all.triangles)
-        .into_iter()
-        .filter(|&(a, b)| (a < wall) != (b < wall))
-        .map(|(a, b)| a.min(b))
-        .collect();
-    meeting.sort_unstable();
-    meeting.dedup();
+    let meeting = meeting(vessels, organ);
     if let Some(&t) = meeting.first() {
-        let at = place(vessels.triangles[t as usize]);
+        let at = first_corner(vessels, vessels.triangles[t as usize]);
         return Err(DomainError::VesselsOutside { count: meeting.len(), outside: false, at });
     }
-    let outside = outside(organ, vessels, false);
+    let outside = Closed::new(organ).outside(vessels);
     match outside.first() {
-        Some(&t) => Err(DomainError::VesselsOutside { count: outside.len(), outside: true, at: place(t) }),
-        None => Ok(()),
-    }
-}
-
-/// Triangles of the vessels that begin outside a closed surface. `closed`: the surface itself is inside.
-fn outside(organ: &TriMesh, vessels: &TriMesh, closed: bool) -> Vec<[u32; 3]> {
-    let corners = |t: u32| organ.triangles[t as usize].map(|v| &organ.points[v as usize]);
-    let boxes: Vec<Aabb> = (0..organ.triangles.len() as u32).map(|t| Aabb::of_points(corners(t))).collect();
-    let tree = Bvh::new(&boxes);
-    let touches = |p: &Point3| {
-        let mut touched = false;
-        tree.query(&Aabb { min: *p, max: *p }, |t| touched |= is_on(p, corners(t)));
-        touched
-    };
-    let is_outside = |p: &Point3| {
-        let mut winding = 0;
-        let ray = Aabb { min: *p, max: Point3::new(f64::INFINITY, p.y, p.z) };
-        tree.query(&ray, |t| winding += crossing(p, corners(t)).unwrap_or_default());
-        winding % 2 == 0 && !(closed && touches(p))
-    };
-    vessels.triangles.par_iter().copied().filter(|t| is_outside(&vessels.points[t[0] as usize])).collect()
-}
-
-/// True if a point lies exactly on a triangle.
-fn is_on(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
-    let flat = |p: &Point3, axis: usize| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
-    let within = |axis: usize| {
-        let turn = |a, b, c| orient2d(flat(a, axis), flat(b, axis), flat(c, axis));
-        let turns = [turn(a, b, p), turn(b, c, p), turn(c, a, p)];
-        turns.iter().all(|&t| t >= 0.0) || turns.iter().all(|&t| t <= 0.0)
-    };
-    orient3d(a, b, c, p) == 0.0 && (0..3).all(within)
-}
-
-/// Checks that no edge of a network properly crosses an organ's surface. Edges that only touch it pass.
-pub fn check_edges(organ: &TriMesh, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
-    let corners = |t: u32| organ.triangles[t as usize].map(|v| &organ.points[v as usize]);
-    let boxes: Vec<Aabb> = (0..organ.triangles.len() as u32).map(|t| Aabb::of_points(corners(t))).collect();
-    let tree = Bvh::of(boxes);
-    let crossed = |edge: &Edge| {
-        let [p, q] = edge.nodes.map(|node| &network.nodes[node.index()].position);
-        let mut first = u32::MAX;
-        tree.query(&Aabb::of_points([p, q]), |t| {
-            if crosses([p, q], corners(t)) {
-                first = first.min(t);
-            }
-        });
-        (first != u32::MAX).then(|| (edge.nodes, corners(first)[0].coords.into()))
-    };
-    let leaving: Vec<([NodeId; 2], [f64; 3])> = network.edges.par_iter().filter_map(crossed).collect();
-    match leaving.first() {
-        Some(&(ends, at)) => {
-            let ends = ends.map(|node| name(network.nodes[node.index()].original));
-            Err(DomainError::EdgesOutside { count: leaving.len(), ends, at })
+        Some(&t) => {
+            Err(DomainError::VesselsOutside { count: outside.len(), outside: true, at: first_corner(vessels, t) })
         }
         None => Ok(()),
     }
-}
-
-/// True if a segment passes from one side of a triangle to the other through its interior.
-fn crosses([p, q]: [&Point3; 2], [a, b, c]: [&Point3; 3]) -> bool {
-    let (from, to) = (orient3d(a, b, c, p), orient3d(a, b, c, q));
-    let turns = || [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
-    let one_turn = |turns: [f64; 3]| turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0);
-    (from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0) && one_turn(turns())
 }
 
 #[cfg(test)]
@@ -217,8 +214,8 @@ mod tests {
     #[test]
     fn boxes_are_closed_and_hold_the_vessels() {
         let ball = sphere_surface(2);
-        for (margin, size) in [(None, None), (Some(0.5), Some(0.7)), (Some(2.0), Some(50.0))] {
-            let around = box_around(&ball, margin, 0.1, size);
+        for (margin, size) in [(usual_margin(&ball, 0.1), None), (0.5, Some(0.7)), (2.0, Some(50.0))] {
+            let around = box_around(&ball, margin, size);
             Tetrahedralizer::new().check(&around).expect("closed");
             assert!(holds(&around, &ball).is_ok());
             let fault = holds(&ball, &around);
@@ -239,9 +236,28 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_are_turned_outwards() {
-        let ball = sphere_surface(1);
-        let turned = TriMesh { triangles: ball.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..ball.clone() };
-        assert!(outward(turned.clone()) != turned && outward(ball.clone()) == ball);
+    fn remeshed_surfaces_stay_apart_and_follow_the_size() {
+        let ball = sphere_surface(3);
+        let inner = TriMesh { points: ball.points.iter().map(|p| p * 0.97).collect(), ..ball.clone() };
+        let count = |size: f64, tolerance: f64| {
+            let mut both = [ball.clone(), inner.clone()];
+            remesh(&mut both, (Some(size), Some(tolerance)), &Watch::NOBODY).expect("remeshed");
+            assert!(meeting(&both[0], &both[1]).is_empty());
+            assert!(Closed::new(&both[0]).outside(&both[1]).is_empty());
+            both.map(|surface| surface.triangles.len())
+        };
+        let given = ball.triangles.len();
+        assert!(count(0.6, 0.02).iter().all(|&own| own < given));
+        assert!(count(0.08, 0.02).iter().all(|&own| own > given));
+    }
+
+    #[test]
+    fn boxes_have_space_for_shells() {
+        let ball = sphere_surface(2);
+        let plan = TissuePlan::new(TissueShape::Box { margin: Some(0.2) });
+        let thick = vec![0.3; ball.points.len()];
+        let vessels = Vessels { surface: &ball, thickness: &thick, outer: 1.3 };
+        let fault = organ(&plan, &vessels, &Watch::NOBODY);
+        assert!(matches!(fault, Err(DomainError::NoSpace { .. })), "{fault:?}");
     }
 }

@@ -93,8 +93,37 @@ pub enum TissueShape {
         /// Margin, in the unit of the network.
         margin: Option<f64>,
     },
-    /// Closed surface around all vessels. Its triangles are kept.
+    /// Convex hull of all vessels with their shells, at this distance; `None`: as for a box.
+    Hull {
+        /// Distance from the outermost shells, in the unit of the network.
+        margin: Option<f64>,
+    },
+    /// Closed surface around all vessels.
     Organ(TriMesh),
+}
+
+/// Region of the tissue inside a closed surface.
+///
+/// ```
+/// use anastomesh_domain::TissueRegion;
+///
+/// let tumour = TissueRegion::new("tumour", anastomesh_mesh::shapes::sphere_surface(2));
+/// assert_eq!(tumour.name, "tumour");
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TissueRegion {
+    /// Name of the region.
+    pub name: String,
+    /// Closed surface, inside that of the organ. It may lie inside another region.
+    pub surface: TriMesh,
+}
+
+impl TissueRegion {
+    /// Region inside a surface.
+    pub fn new(name: impl Into<String>, surface: TriMesh) -> Self {
+        Self { name: name.into(), surface }
+    }
 }
 
 /// Tissue around the vessels.
@@ -103,13 +132,25 @@ pub enum TissueShape {
 pub struct TissuePlan {
     /// Shape.
     pub shape: TissueShape,
+    /// Regions of the tissue with surfaces of their own.
+    pub regions: Vec<TissueRegion>,
+    /// True if surfaces of organ and regions are remeshed to the size of the tissue. Otherwise their triangles are kept.
+    pub remesh: bool,
+    /// Maximum distance between a surface and the remeshed one; `None`: 0.001 of the diagonal.
+    pub tolerance: Option<f64>,
     /// Maximum edge length, in the unit of the network; `None`: growth alone determines it.
     pub size: Option<f64>,
     /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels.
     pub growth: f64,
 }
 
-anastomesh_mesh::setters!(TissuePlan { size: impl Into<Option<f64>>, growth: f64 });
+anastomesh_mesh::setters!(TissuePlan {
+    regions: Vec<TissueRegion>,
+    remesh: bool,
+    tolerance: impl Into<Option<f64>>,
+    size: impl Into<Option<f64>>,
+    growth: f64,
+});
 
 impl TissuePlan {
     /// Default of `growth`.
@@ -117,7 +158,7 @@ impl TissuePlan {
 
     /// Tissue of this shape.
     pub fn new(shape: TissueShape) -> Self {
-        Self { shape, size: None, growth: Self::GROWTH }
+        Self { shape, regions: Vec::new(), remesh: false, tolerance: None, size: None, growth: Self::GROWTH }
     }
 }
 
@@ -143,6 +184,9 @@ anastomesh_mesh::setters!(DomainPlan {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DomainPlanError {
+    /// Tissue with embedded vessels has regions inside, or is to be remeshed.
+    #[error("tissue with embedded vessels has no regions inside and keeps its surface: remove these options")]
+    Embedded,
     /// A thickness is zero, negative or not finite.
     #[error("invalid thickness of {name} {value}: give a length, a share of the radius, or a sum of both, above 0")]
     Thickness {
@@ -191,6 +235,9 @@ pub enum DomainPlanError {
         /// Valid values.
         range: &'static str,
     },
+    /// A surface is to be remeshed, and there is none.
+    #[error("nothing to remesh: a box or hull follows the size of the tissue by itself")]
+    Remesh,
 }
 
 /// Name of the region around the vessels.
@@ -202,10 +249,13 @@ impl DomainPlan {
         self.shells.is_empty() && self.tissue.is_none()
     }
 
-    /// Names of all regions, from the inside outwards. The id of a region is its place here, from 1.
+    /// Names of all regions, from the inside outwards, with the regions of the tissue last. The id of a region is its place
+    /// here, from 1.
     pub fn names(&self) -> Vec<&str> {
         let shells = self.shells.iter().map(|shell| shell.name.as_str());
-        std::iter::once(NamedRegion::LUMEN).chain(shells).chain(self.tissue.iter().map(|_| TISSUE)).collect()
+        let inner = self.tissue.iter().flat_map(|tissue| &tissue.regions).map(|region| region.name.as_str());
+        let all = std::iter::once(NamedRegion::LUMEN).chain(shells).chain(self.tissue.iter().map(|_| TISSUE));
+        all.chain(inner).collect()
     }
 
     /// Checks names and ranges.
@@ -249,10 +299,18 @@ impl TissuePlan {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let fault = |what, value, range| Err(DomainPlanError::Tissue { what, value, range });
         match (&self.shape, self.size) {
-            (TissueShape::Box { margin: Some(margin) }, _) if !positive(*margin) => {
+            (TissueShape::Box { margin: Some(margin) } | TissueShape::Hull { margin: Some(margin) }, _)
+                if !positive(*margin) =>
+            {
                 fault("margin", *margin, "give a length above 0")
             }
+            _ if self.tolerance.is_some_and(|tolerance| !positive(tolerance)) => {
+                fault("tolerance", self.tolerance.unwrap_or_default(), "give a distance above 0")
+            }
             (_, Some(size)) if !positive(size) => fault("size", size, "give an edge length above 0"),
+            (TissueShape::Box { .. } | TissueShape::Hull { .. }, _) if self.remesh && self.regions.is_empty() => {
+                Err(DomainPlanError::Remesh)
+            }
             _ if !(self.growth >= 1.1 && self.growth.is_finite()) => fault("growth", self.growth, "give 1.1 or more"),
             _ => Ok(()),
         }

@@ -10,7 +10,7 @@ use super::optimize::{Effort, OptimizeReport};
 use super::options::{Boundary, Interior, Refinement, Sizing};
 use super::outside::without;
 use super::plc::LeftOut;
-use super::plc::{InputKind, InputPart, PlcRef};
+use super::plc::{InputKind, InputPart, Plc, PlcRef};
 use super::progress::{Progress, Stage, Watch};
 use super::recover::RecoverySummary;
 use super::refine::RefineReport;
@@ -364,28 +364,16 @@ impl Tetrahedralizer {
     fn run_remeshed(&self, plc: PlcRef, tolerance: Option<f64>, watch: &Watch) -> Result<Tetrahedralization, TetError> {
         sized::check(self.refinement.as_ref(), &self.sizing, plc.surface.points.len())?;
         contacts::no_contacts(plc.surface, watch)?;
-        let max_volume = self.refinement.as_ref().and_then(|r| r.bounds.max_volume);
-        let (function, keep): (Option<sized::SizeFunction>, _) = match &self.sizing {
-            Sizing::Surface => (None, self.clone()),
-            Sizing::Constant(size) => {
-                let size = *size;
-                (Some(Arc::new(move |_: &Point3| size)), self.clone())
-            }
-            Sizing::Function(size) => (Some(Arc::clone(size)), self.clone()),
+        let keep = match &self.sizing {
             // The lengths at points of the input also apply to the new points.
             Sizing::PerVertex(_) => {
                 let size: sized::SizeFunction = Arc::new(sized::size_function(plc.surface, &self.sizing, None));
-                (Some(Arc::clone(&size)), self.clone().sizing(Sizing::Function(size)))
+                self.clone().sizing(Sizing::Function(size))
             }
+            _ => self.clone(),
         };
         let keep = keep.boundary(Boundary::Keep);
-        let wanted = Wanted {
-            tolerance,
-            size: function.as_deref().map(|size| size as &dyn Fn(&Point3) -> f64),
-            longest: max_volume.map_or(f64::INFINITY, sized::edge_of_volume),
-            most: self.max_tets,
-        };
-        let Remeshed { plc: new, origins, summary } = remesh(plc, &wanted, watch)?;
+        let Remeshed { plc: new, origins, summary } = keep.remeshed(plc, tolerance, watch)?;
         let origin = |&t: &u32| origins.get(t as usize).copied().unwrap_or(t);
         let mut done = keep.run_watched((&new).into(), watch).map_err(|error| match error {
             TetError::Outside { part: part @ InputPart::Triangles, ids, count } => {
@@ -401,6 +389,22 @@ impl Tetrahedralizer {
         left_out.dedup();
         done.summary.remesh = Some(summary);
         Ok(done)
+    }
+
+    /// Remeshes the surface of a checked complex. Lengths are not given per point.
+    fn remeshed(&self, plc: PlcRef, tolerance: Option<f64>, watch: &Watch) -> Result<Remeshed, TetError> {
+        let max_volume = self.refinement.as_ref().and_then(|r| r.bounds.max_volume);
+        let constant;
+        let size: Option<&dyn Fn(&Point3) -> f64> = match &self.sizing {
+            Sizing::Surface | Sizing::PerVertex(_) => None,
+            Sizing::Constant(size) => {
+                constant = move |_: &Point3| *size;
+                Some(&constant)
+            }
+            Sizing::Function(size) => Some(size.as_ref()),
+        };
+        let longest = max_volume.map_or(f64::INFINITY, sized::edge_of_volume);
+        remesh(plc, &Wanted { tolerance, size, longest, most: self.max_tets }, watch)
     }
 
     /// Checks the requested layers, and their combination with other options.
@@ -497,6 +501,26 @@ pub fn fill_around(
     watch: &Watch,
 ) -> Result<Tetrahedralization, TetError> {
     Tetrahedralizer { spaced: true, sources: sources.into(), ..by.clone() }.run_watched(surface.into(), watch)
+}
+
+/// Remeshes closed surfaces as [`Boundary::Remesh`] does, with edges of about this length, or of their own lengths.
+/// `markers` tell the surfaces apart. Returns the new surface, and the marker of each of its triangles.
+///
+/// # Errors
+/// Those of [`Tetrahedralizer::run`] for the surface, size and tolerance.
+pub fn remesh_closed(
+    surface: &TriMesh,
+    markers: &[i32],
+    (size, tolerance): (Option<f64>, Option<f64>),
+    watch: &Watch,
+) -> Result<(TriMesh, Vec<i32>), TetError> {
+    let sizing = size.map_or(Sizing::Surface, Sizing::Constant);
+    sized::check(None, &sizing, surface.points.len())?;
+    input::validate(surface, &[], InputKind::Closed)?;
+    contacts::no_contacts(surface, watch)?;
+    let plc = Plc::from(surface).markers(markers.to_vec());
+    let made = Tetrahedralizer::new().sizing(sizing).remeshed((&plc).into(), tolerance, watch)?;
+    Ok((made.plc.surface, made.plc.markers))
 }
 
 /// Fills a closed surface that is oriented outwards, with the interior, improvement and effort of the tetrahedralizer.

@@ -1,6 +1,6 @@
 //! Parts of the tetrahedralizer that the vascular mesher assembles itself. Not covered by semantic versioning.
 
-pub use crate::builder::{fill_around, fill_outward, fill_spaced};
+pub use crate::builder::{fill_around, fill_outward, fill_spaced, remesh_closed};
 pub use crate::complex::Complex;
 pub use crate::corner_tets::split_corner_tets;
 pub use crate::delaunay::delaunay;

@@ -22,7 +22,7 @@ class DomainOptions(TypedDict, total=False):
         Sequence[str] | None, Option("Further shells, each as 'NAME=THICKNESS[:LAYERS]', from the inside outwards", flag="shell")
     ]
     tissue: Annotated[
-        str | None, Option("Tissue around the vessels: 'box', 'box:MARGIN', or the file of a closed surface")
+        str | None, Option("Tissue around the vessels: 'box', 'hull', 'box:MARGIN', 'hull:MARGIN', or the file of a closed surface")
     ]
     tissue_size: Annotated[float | None, Option("Maximum edge length in the tissue")]
     tissue_growth: Annotated[
@@ -33,5 +33,10 @@ class DomainOptions(TypedDict, total=False):
     ]
     embed_size: Annotated[
         float | str, Option("Edge length at embedded vessels: a length (0.05, '5um'), a multiple of the radius ('2r'), a sum, or an array of the network", "2r")
+    ]
+    tissue_remesh: Annotated[bool, Option("Remesh the surfaces of tissue and regions to the size of the tissue")]
+    tissue_tolerance: Annotated[float | None, Option("Maximum distance between a surface and the remeshed one")]
+    tissue_regions: Annotated[
+        Sequence[str] | None, Option("Regions of the tissue, each as 'NAME=SURFACE' with a closed surface", flag="tissue-region")
     ]
     without: Annotated[Sequence[str] | None, Option("Regions to leave out of the result, for example ['lumen']")]

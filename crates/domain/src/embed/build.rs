@@ -1,11 +1,11 @@
 //! Tissue around vessels that are lines, and the vessels in its cells.
 
+use super::organ::surface;
 use super::pieces::Pieces;
 use super::plan::EmbedPlan;
 use super::sources::sources;
 use crate::error::DomainError;
-use crate::organ::{axes, box_around, outward};
-use crate::plan::{TISSUE, TissueShape};
+use crate::plan::TISSUE;
 use anastomesh_mesh::check::{CheckReport, check_regions};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -56,7 +56,7 @@ impl Embedding {
     pub fn of(network: &Skeleton, plan: &EmbedPlan, progress: &dyn Progress) -> Result<Self, DomainError> {
         plan.validate()?;
         let sources = sources(network, &plan.size, plan.max_tets)?;
-        let surface = surface(network, plan);
+        let surface = surface(network, plan, &Watch::of(progress))?;
         let mesh = fill(plan, &surface, &sources, progress)?;
         drop((sources, surface));
         let pieces = Pieces::of(&mesh.mesh, network, progress)?;
@@ -64,17 +64,6 @@ impl Embedding {
         progress.at(Stage::Check, 0, 0);
         let check = check_regions(&mesh, &regions, None);
         Ok(Self { mesh, regions, pieces, check })
-    }
-}
-
-/// Surface around the tissue.
-fn surface(network: &Skeleton, plan: &EmbedPlan) -> TriMesh {
-    match &plan.tissue.shape {
-        TissueShape::Box { margin } => {
-            let radius = network.edges.iter().flat_map(|edge| edge.radii).fold(0.0, f64::max);
-            box_around(&axes(network), *margin, radius, plan.tissue.size)
-        }
-        TissueShape::Organ(surface) => outward(surface.clone()),
     }
 }
 

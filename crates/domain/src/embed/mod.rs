@@ -7,6 +7,7 @@ mod build;
 mod clip;
 mod error;
 mod inside;
+mod organ;
 mod pieces;
 mod plan;
 mod sources;

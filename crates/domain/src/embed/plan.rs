@@ -1,7 +1,8 @@
 //! Options of an embedding.
 
+use super::organ::check_edges;
+use crate::before::contains_nodes;
 use crate::error::DomainError;
-use crate::organ::{check_edges, check_organ};
 use crate::plan::{DomainPlanError, Thickness, TissuePlan, TissueShape};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::Tetrahedralizer;
@@ -47,10 +48,13 @@ impl EmbedPlan {
     /// # Errors
     /// The first fault.
     pub fn validate(&self) -> Result<(), DomainPlanError> {
-        match self.size.invalid() {
-            Some(value) => Err(DomainPlanError::Size(value)),
-            None => self.tissue.validate(),
+        if let Some(value) = self.size.invalid() {
+            return Err(DomainPlanError::Size(value));
         }
+        if self.tissue.remesh || !self.tissue.regions.is_empty() {
+            return Err(DomainPlanError::Embedded);
+        }
+        self.tissue.validate()
     }
 
     /// Checks ranges, and that the tissue's surface contains a network. Nodes exactly on the surface are inside. `name` is
@@ -61,7 +65,8 @@ impl EmbedPlan {
     pub fn check(&self, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
         self.validate()?;
         let TissueShape::Organ(surface) = &self.tissue.shape else { return Ok(()) };
-        check_organ(surface, network, true, name)?;
+        Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
+        contains_nodes(surface, network, true, name)?;
         check_edges(surface, network, name)
     }
 }

@@ -1,0 +1,222 @@
+//! Checks of a plan before a network is meshed.
+
+use super::error::DomainError;
+use super::inside::{Closed, tidy};
+use super::nested::{check_nested, name_of};
+use super::organ::{Vessels, organ};
+use super::plan::{DomainPlan, Site, TissuePlan, TissueShape};
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3, point_triangle, segment_segment};
+use anastomesh_skeleton::{EdgeId, Skeleton};
+use anastomesh_tet::Tetrahedralizer;
+use anastomesh_tet::parts::Watch;
+use rayon::prelude::*;
+
+/// Fraction of the radius within which a surface certainly meets the lumen, whose radius is exact to a few percent.
+const CERTAIN: f64 = 0.95;
+
+impl DomainPlan {
+    /// Checks names and ranges, and that surfaces around the tissue and in it are closed, contain what they must, and do not
+    /// meet each other or vessels. `name` is the name of a node in the file.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn check(&self, network: &Skeleton, name: &dyn Fn(u32) -> String) -> Result<(), DomainError> {
+        self.validate()?;
+        let Some(tissue) = &self.tissue else { return Ok(()) };
+        if let TissueShape::Organ(surface) = &tissue.shape {
+            Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
+            contains_nodes(surface, network, false, name)?;
+            crosses_none(surface, 0, (tissue, network), name)?;
+        }
+        for region in &tissue.regions {
+            let fault = |source| DomainError::Region { region: region.name.clone(), source };
+            Tetrahedralizer::new().check(&region.surface).map_err(fault)?;
+        }
+        if matches!(tissue.shape, TissueShape::Box { .. }) || !tissue.regions.is_empty() {
+            let mut surfaces = vec![self.expected_organ(tissue, network)?];
+            surfaces.extend(tissue.regions.iter().map(|region| tidy(&region.surface)));
+            check_nested(&surfaces, tissue)?;
+        }
+        for (i, region) in (1..).zip(&tissue.regions) {
+            crosses_none(&region.surface, i, (tissue, network), name)?;
+        }
+        Ok(())
+    }
+
+    /// Surface of the organ, with a sphere at each node for the vessels.
+    fn expected_organ(&self, tissue: &TissuePlan, network: &Skeleton) -> Result<TriMesh, DomainError> {
+        let (mut points, mut thickness, mut outer) = (Vec::new(), Vec::new(), 0.0_f64);
+        for edge in &network.edges {
+            let ends = edge.nodes.map(|node| network.node(node).original);
+            for (i, t) in [0.0, 1.0].into_iter().enumerate() {
+                let (p, radius) = (network.node(edge.nodes[i]).position, edge.radii[i]);
+                let own = self.thickness(&Site { radius, ends, t });
+                outer = outer.max(radius + own);
+                if let TissueShape::Hull { .. } = tissue.shape {
+                    points.push(p);
+                    thickness.push(radius + own);
+                } else {
+                    points.extend([p - Vec3::repeat(radius), p + Vec3::repeat(radius)]);
+                    thickness.extend([own; 2]);
+                }
+            }
+        }
+        let surface = TriMesh { points, triangles: Vec::new() };
+        organ(tissue, &Vessels { surface: &surface, thickness: &thickness, outer }, &Watch::NOBODY)
+    }
+}
+
+/// Checks that an organ's surface contains the nodes of a network. `touching`: nodes exactly on the surface are inside.
+pub fn contains_nodes(
+    organ: &TriMesh,
+    network: &Skeleton,
+    touching: bool,
+    name: &dyn Fn(u32) -> String,
+) -> Result<(), DomainError> {
+    let closed = Closed::new(organ);
+    let is_inside = |p: &Point3| closed.contains(p) || touching && closed.touches(p);
+    let outside: Vec<_> = network.nodes.par_iter().filter(|node| !is_inside(&node.position)).collect();
+    match outside.first() {
+        Some(node) => {
+            let (node, at) = (name(node.original), node.position.coords.into());
+            Err(DomainError::NodesOutside { count: outside.len(), node, at })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Checks that no vessel crosses a surface.
+fn crosses_none(
+    surface: &TriMesh,
+    number: usize,
+    (plan, network): (&TissuePlan, &Skeleton),
+    name: &dyn Fn(u32) -> String,
+) -> Result<(), DomainError> {
+    let closed = Closed::new(surface);
+    let edges: Vec<EdgeId> = network.edge_ids().collect();
+    let crossing = |&edge: &EdgeId| Some((edge, contact(&closed, &network.tube(edge))?));
+    let found: Vec<(EdgeId, Point3)> = edges.par_iter().filter_map(crossing).collect();
+    let Some(&(edge, at)) = found.first() else { return Ok(()) };
+    Err(DomainError::VesselsCross {
+        region: name_of(plan, number).to_owned(),
+        is_organ: number == 0,
+        count: found.len(),
+        nodes: network.edge(edge).nodes.map(|node| name(network.node(node).original)),
+        at: at.coords.into(),
+    })
+}
+
+/// Place where a surface meets a tube.
+fn contact(closed: &Closed, tube: &Tube) -> Option<Point3> {
+    let place = Aabb::of_points([&tube.a, &tube.b]).grown(tube.max_radius());
+    let mut near = closed.near(&place);
+    near.sort_unstable();
+    near.into_iter().find_map(|t| meets(tube, closed.corners(t)))
+}
+
+/// Place where a triangle meets the inner part of a tube.
+fn meets(tube: &Tube, corners: [&Point3; 3]) -> Option<Point3> {
+    let [a, b, c] = corners;
+    for (p, radius) in [(&tube.a, tube.ra), (&tube.b, tube.rb)] {
+        let (nearest, distance) = point_triangle(p, corners);
+        if distance < CERTAIN * radius {
+            return Some(nearest);
+        }
+    }
+    for side in [[a, b], [b, c], [c, a]] {
+        let pair = segment_segment([&tube.a, &tube.b], side);
+        if pair.distance < CERTAIN * tube.radius(pair.s) {
+            return Some(side[0] + (side[1] - side[0]) * pair.t);
+        }
+    }
+    pierces(&tube.a, &tube.b, corners).then(|| middle(corners))
+}
+
+/// True if a segment passes through a triangle.
+fn pierces(p: &Point3, q: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
+    let sides = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
+    let turns = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    let passes = turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0);
+    sides[0] * sides[1] < 0.0 && passes
+}
+
+fn middle([a, b, c]: [&Point3; 3]) -> Point3 {
+    Point3::from((a.coords + b.coords + c.coords) / 3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::{ShellPlan, Thickness, TissueRegion};
+    use super::*;
+    use anastomesh_mesh::shapes::sphere_surface;
+    use anastomesh_skeleton::fixtures::network;
+
+    fn ball(z: f64, radius: f64) -> TriMesh {
+        let ball = sphere_surface(2);
+        let points = ball.points.iter().map(|p| p * radius + Vec3::z() * z).collect();
+        TriMesh { points, ..ball }
+    }
+
+    fn line() -> Skeleton {
+        network(&[[0.0, 0.0, 0.0], [0.0, 0.0, 10.0]], 1.0, &[(0, 1)])
+    }
+
+    fn checked(tissue: TissuePlan) -> Result<(), DomainError> {
+        DomainPlan::default().tissue(tissue).check(&line(), &|node| format!("n{node}"))
+    }
+
+    fn organ_with(surface: TriMesh, region: Option<TriMesh>) -> TissuePlan {
+        let regions = region.into_iter().map(|surface| TissueRegion::new("tumour", surface)).collect();
+        TissuePlan::new(TissueShape::Organ(surface)).regions(regions)
+    }
+
+    #[test]
+    fn vessels_may_lie_inside_or_outside_a_region() {
+        for region in [ball(5.0, 9.0), ball(-3.0, 1.0)] {
+            checked(organ_with(ball(5.0, 20.0), Some(region))).expect("valid");
+        }
+    }
+
+    #[test]
+    fn vessels_that_cross_a_surface_are_named() {
+        // Across the axis, around a part of it, touching the tube only, and inside the tube.
+        for region in [ball(0.0, 4.0), ball(5.0, 2.0), ball(-2.5, 1.8), ball(5.0, 0.4)] {
+            match checked(organ_with(ball(5.0, 20.0), Some(region))) {
+                Err(DomainError::VesselsCross { nodes, region, is_organ: false, count: 1, .. }) => {
+                    assert_eq!((nodes, region.as_str()), (["n0".into(), "n1".into()], "tumour"));
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        let organ = checked(organ_with(ball(5.0, 5.6), None));
+        assert!(matches!(organ, Err(DomainError::VesselsCross { is_organ: true, .. })), "{organ:?}");
+    }
+
+    #[test]
+    fn bad_surfaces_are_refused_before_the_work() {
+        let mut open = ball(-5.0, 1.0);
+        open.triangles.pop();
+        let fault = checked(organ_with(ball(5.0, 20.0), Some(open)));
+        assert!(matches!(fault, Err(DomainError::Region { .. })), "{fault:?}");
+        let boxed = |z| {
+            TissuePlan::new(TissueShape::Box { margin: Some(4.0) }).regions(vec![TissueRegion::new("a", ball(z, 0.5))])
+        };
+        checked(boxed(-3.0)).expect("inside");
+        assert!(matches!(checked(boxed(-9.0)), Err(DomainError::RegionOutside { .. })));
+        assert!(matches!(checked(boxed(-5.0)), Err(DomainError::SurfacesMeet { .. })));
+        let hull = |z| TissuePlan { shape: TissueShape::Hull { margin: Some(4.0) }, ..boxed(z) };
+        checked(hull(-3.0)).expect("inside");
+        assert!(matches!(checked(hull(-9.0)), Err(DomainError::RegionOutside { .. })));
+    }
+
+    #[test]
+    fn boxes_within_the_shells_are_refused() {
+        let wall = ShellPlan::new("wall", Thickness::Law { length: 0.0, radii: 0.5 });
+        let plan =
+            DomainPlan::default().shells(vec![wall]).tissue(TissuePlan::new(TissueShape::Box { margin: Some(0.4) }));
+        let fault = plan.check(&line(), &|node| node.to_string());
+        assert!(matches!(fault, Err(DomainError::NoSpace { .. })), "{fault:?}");
+    }
+}

@@ -1,0 +1,139 @@
+//! Closed surfaces: points inside, and contacts between two surfaces.
+
+use anastomesh_mesh::TriMesh;
+use anastomesh_mesh::adjacency::vertices_of;
+use anastomesh_mesh::geometry::predicates::{orient2d, orient3d};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, crossing, self_intersections};
+use rayon::prelude::*;
+
+/// Closed surface with a search tree of its triangles.
+pub struct Closed<'a> {
+    surface: &'a TriMesh,
+    tree: Bvh,
+}
+
+impl<'a> Closed<'a> {
+    pub fn new(surface: &'a TriMesh) -> Self {
+        let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
+        let boxes: Vec<Aabb> = surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect();
+        Self { surface, tree: Bvh::new(&boxes) }
+    }
+
+    pub fn corners(&self, t: u32) -> [&Point3; 3] {
+        self.surface.triangles[t as usize].map(|v| &self.surface.points[v as usize])
+    }
+
+    /// Triangles near a box.
+    pub fn near(&self, place: &Aabb) -> Vec<u32> {
+        let mut found = Vec::new();
+        self.tree.query(place, |t| found.push(t));
+        found
+    }
+
+    /// True if a ray from a point crosses the surface an odd number of times.
+    pub fn contains(&self, p: &Point3) -> bool {
+        let mut winding = 0;
+        let ray = Aabb { min: *p, max: Point3::new(f64::INFINITY, p.y, p.z) };
+        self.tree.query(&ray, |t| winding += crossing(p, self.corners(t)).unwrap_or_default());
+        winding % 2 != 0
+    }
+
+    /// True if a point lies exactly on the surface.
+    pub fn touches(&self, p: &Point3) -> bool {
+        self.near(&Aabb { min: *p, max: *p }).into_iter().any(|t| is_on(p, self.corners(t)))
+    }
+
+    /// Triangles that begin outside.
+    pub fn outside(&self, other: &TriMesh) -> Vec<[u32; 3]> {
+        let is_outside = |t: &[u32; 3]| !self.contains(&other.points[t[0] as usize]);
+        other.triangles.par_iter().copied().filter(is_outside).collect()
+    }
+}
+
+/// True if a point lies exactly on a triangle.
+fn is_on(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
+    let flat = |p: &Point3, axis: usize| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
+    let within = |axis: usize| {
+        let turn = |a, b, c| orient2d(flat(a, axis), flat(b, axis), flat(c, axis));
+        let turns = [turn(a, b, p), turn(b, c, p), turn(c, a, p)];
+        turns.iter().all(|&t| t >= 0.0) || turns.iter().all(|&t| t <= 0.0)
+    };
+    orient3d(a, b, c, p) == 0.0 && (0..3).all(within)
+}
+
+/// Triangles of the first surface that touch the second one, ascending.
+pub fn meeting(first: &TriMesh, second: &TriMesh) -> Vec<u32> {
+    let shared = Aabb::of_points(&second.points);
+    let near = |surface: &TriMesh, place: &Aabb| -> Vec<u32> {
+        let overlaps = |t: &[u32; 3]| Aabb::of_points(t.map(|v| &surface.points[v as usize])).overlaps(place);
+        let found = (0..).zip(&surface.triangles).filter(|(_, t)| overlaps(t));
+        found.map(|(t, _)| t).collect()
+    };
+    let own = near(first, &shared);
+    let other = near(second, &Aabb::of_points(&first.points));
+    let (from, count) = (first.points.len() as u32, own.len() as u32);
+    let mut triangles: Vec<[u32; 3]> = own.iter().map(|&t| first.triangles[t as usize]).collect();
+    triangles.extend(other.iter().map(|&t| second.triangles[t as usize].map(|v| v + from)));
+    let points: Vec<Point3> = first.points.iter().chain(&second.points).copied().collect();
+    let pairs = self_intersections(&points, &triangles).into_iter();
+    let mut found: Vec<u32> =
+        pairs.filter(|&(a, b)| (a < count) != (b < count)).map(|(a, b)| own[a.min(b) as usize]).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The surface without unused points, oriented outwards as a whole.
+pub fn tidy(surface: &TriMesh) -> TriMesh {
+    let used = vertices_of(&surface.triangles, surface.points.len());
+    let (mut number, mut points) = (vec![0; used.len()], Vec::new());
+    for v in (0..used.len()).filter(|&v| used[v]) {
+        number[v] = points.len() as u32;
+        points.push(surface.points[v]);
+    }
+    let triangles = surface.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
+    outward(TriMesh { points, triangles })
+}
+
+fn outward(mut surface: TriMesh) -> TriMesh {
+    let Some(&from) = surface.points.first() else { return surface };
+    let six_volumes = surface.triangles.iter().map(|t| {
+        let [a, b, c] = t.map(|v| surface.points[v as usize] - from);
+        a.cross(&b).dot(&c)
+    });
+    if six_volumes.sum::<f64>() < 0.0 {
+        surface.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    surface
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Vec3;
+    use anastomesh_mesh::shapes::sphere_surface;
+
+    #[test]
+    fn surfaces_are_turned_outwards_and_lose_unused_points() {
+        let ball = sphere_surface(1);
+        let mut turned =
+            TriMesh { triangles: ball.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..ball.clone() };
+        turned.points.push(Point3::new(9.0, 9.0, 9.0));
+        assert!(tidy(&turned) == ball && tidy(&ball) == ball);
+    }
+
+    #[test]
+    fn contacts_and_points_inside_are_found() {
+        let ball = sphere_surface(2);
+        let moved = |way: Vec3, scale: f64| TriMesh {
+            points: ball.points.iter().map(|p| p * scale + way).collect(),
+            triangles: ball.triangles.clone(),
+        };
+        assert!(meeting(&ball, &moved(Vec3::x(), 1.0)).len() > 4);
+        let small = moved(Vec3::x() * 0.2, 0.5);
+        assert!(meeting(&small, &ball).is_empty());
+        let closed = Closed::new(&ball);
+        assert!(closed.outside(&small).is_empty() && closed.contains(&small.points[0]));
+        assert_eq!(closed.outside(&moved(Vec3::x() * 4.0, 1.0)).len(), ball.triangles.len());
+    }
+}
