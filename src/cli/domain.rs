@@ -329,12 +329,12 @@ impl DomainArgs {
         self.tissue_tolerance.iter().for_each(|tolerance| add("tissue-tolerance", tolerance));
         self.tissue_region.iter().for_each(|region| add("tissue-region", region));
         self.without.iter().for_each(|region| add("without", region));
-        if self.tissue_remesh {
-            words.push(" --tissue-remesh".into());
-        }
         if self.embed {
             add("embed-size", &self.embed_size);
             words.push(" --embed".into());
+        }
+        if self.tissue_remesh {
+            words.push(" --tissue-remesh".into());
         }
         words.concat()
     }

@@ -59,7 +59,8 @@ fn with_request<T>(surface: &TriMesh, run: impl FnOnce(&Request) -> T) -> T {
 }
 
 fn effort(left: u64) -> Effort {
-    Effort { left, last: TetError::NotRecovered { edges: Vec::new(), triangles: Vec::new() } }
+    let last = TetError::NotRecovered { edges: Vec::new(), triangles: Vec::new() };
+    Effort { left, last, fewest: usize::MAX }
 }
 
 #[test]
