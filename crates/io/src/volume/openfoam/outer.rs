@@ -119,8 +119,8 @@ impl<'a> OuterMesh<'a> {
                 self.patches.push(Patch { id, name: name.clone(), cap: None });
             }
             let [first, second] = names;
-            self.sides.insert(ids[0], Side { region: outside.to_string(), patch: second });
-            self.sides.insert(ids[1], Side { region: inside.to_string(), patch: first });
+            self.sides.insert(ids[0], Side { region: outside.clone(), patch: second });
+            self.sides.insert(ids[1], Side { region: inside.clone(), patch: first });
             for face in surface.iter().filter(|face| face.beyond == region) {
                 let [a, b, c] = face.vertices;
                 self.put(renumbered(face.vertices, twins), ids[0], lumen);
