@@ -140,4 +140,15 @@ mod tests {
             assert!(smallest.fold(f64::INFINITY, f64::min) > 15.0);
         }
     }
+
+    #[test]
+    fn hulls_of_many_vessels_are_remeshed() {
+        let at = |i: u32, step: f64, most: f64| (f64::from(i) * step).fract() * most;
+        let cloud: Vec<Sphere> =
+            (0..60).map(|i| (Point3::new(at(i, 0.618, 40.0), at(i, 0.414, 30.0), at(i, 0.732, 20.0)), 0.4)).collect();
+        let surface = hull(&cloud, 2.5, 2.5, &Watch::NOBODY).expect("made");
+        let count = surface.triangles.len();
+        assert!(count < 4000, "{count}");
+        assert!(clearance(&surface, &cloud) > 0.9 * 2.5);
+    }
 }
