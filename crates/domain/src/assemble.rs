@@ -1,7 +1,6 @@
 //! One mesh of lumen, shells and tissue, with names for its regions, interfaces and outer boundaries.
 //!
-//! Points are those of the lumen, then those of the shells, then those of the surfaces around the tissue, then those inside
-//! each of its regions.
+//! Points are those of the lumen, of the shells, of the surfaces around the tissue, and inside each of its regions, in this order.
 
 use super::layout::Layout;
 use super::plan::DomainPlan;
