@@ -61,7 +61,7 @@ pub struct DomainArgs {
     /// Further shell outside these, for example `adventitia=0.1r:2`; repeatable, from the inside outwards
     #[arg(long, value_name = "NAME=THICKNESS[:LAYERS]", value_parser = checked::<ShellArg>)]
     shell: Vec<String>,
-    /// Tissue around the vessels: box, hull, box:MARGIN, hull:MARGIN, or a closed surface
+    /// Tissue: box, hull, box:MARGIN, hull:MARGIN, or a closed surface
     #[arg(long, value_name = "SHAPE", value_parser = checked::<TissueArg>)]
     tissue: Option<String>,
     /// Embed the vessels in the tissue as lines, for coupled 1D-3D models, instead of meshing them. Edges of the tissue are

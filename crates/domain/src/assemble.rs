@@ -1,7 +1,6 @@
 //! One mesh of lumen, shells and tissue, with names for its regions, interfaces and outer boundaries.
 //!
-//! Points are those of the lumen, then those of the shells, then those of the surfaces around the tissue, then those inside
-//! each of its regions.
+//! Points are those of the lumen, of the shells, of the surfaces around the tissue, and inside each of its regions, in this order.
 
 use super::layout::Layout;
 use super::plan::DomainPlan;
@@ -98,19 +97,7 @@ pub fn assemble(
     }
     faces.patches = lumen.boundary_patch;
     if shells.sides.is_empty() {
-        for (patch, t) in faces.patches.iter_mut().zip(&surface.surface.triangles) {
-            let home = layout.home(t[0]);
-            if *patch == WALL && home > 0 {
-                *patch = -(home as i32);
-            }
-        }
-        for home in 1..tissue.len() {
-            let marked = -(home as i32);
-            if faces.patches.contains(&marked) {
-                let id = faces.patch(&side(LUMEN_ID, home));
-                faces.patches.iter_mut().filter(|patch| **patch == marked).for_each(|patch| *patch = id);
-            }
-        }
+        divide_wall(&mut faces, layout, tissue.len(), &|home| side(LUMEN_ID, home));
     }
     faces.faces = lumen.boundary;
     faces.regions = vec![LUMEN_ID; faces.faces.len()];
@@ -129,22 +116,8 @@ pub fn assemble(
             if shells.sides.len() == 1 { format!("ring_{cap}") } else { format!("ring_{}_{cap}", name_of(region)) };
         faces.add(&name, region, ring.triangles.iter().map(|t| t.map(in_mesh)));
     }
-    for (k, (region, outside)) in tissue.iter().zip(&layout.outsides).enumerate() {
-        let id = tissue_id + k as i32;
-        for (i, range) in &outside.of_surfaces {
-            // The other side of the surface, which is outside for the first.
-            let beyond = if *i == k { layout.around.map_or(0, |around| around.parents[*i]) } else { *i };
-            let name = match (k, *i) {
-                (0, 0) => "organ".to_owned(),
-                // The region with the smaller id lists the face.
-                _ if beyond < k => continue,
-                _ => format!("interface_{}_{}", name_of(id), name_of(tissue_id + beyond as i32)),
-            };
-            // Faces of a filled region face out of it.
-            let own = region.faces[range.clone()].iter();
-            faces.add(&name, id, own.map(|t| t.map(|v| in_mesh(outside.numbers[v as usize]))));
-        }
-    }
+    let region_name = |k: usize| name_of(tissue_id + k as i32);
+    label_tissue(&mut faces, layout, tissue, (tissue_id, &region_name), &in_mesh);
     if tissue.len() > 1 {
         let used = &faces.patches;
         faces.list.retain(|patch| used.contains(&patch.id));
@@ -155,4 +128,46 @@ pub fn assemble(
         regions.into_iter().partition(|region| plan.without.contains(&region.name));
     let out: Vec<i32> = out.into_iter().map(|region| region.id).collect();
     (if out.is_empty() { volume } else { without(volume, &out) }, kept)
+}
+
+/// Gives the lumen's wall a patch in each region around it, beyond the first.
+fn divide_wall(faces: &mut Labelled, layout: &Layout, regions: usize, name: &dyn Fn(usize) -> String) {
+    let homes: Vec<usize> = layout.lumen.surface.triangles.iter().map(|t| layout.home(t[0])).collect();
+    for home in 1..regions {
+        let is_own = |(own, patch): (&usize, &i32)| *own == home && *patch == WALL;
+        if homes.iter().zip(&faces.patches).any(is_own) {
+            let id = faces.patch(&name(home));
+            for (own, patch) in homes.iter().zip(&mut faces.patches) {
+                if is_own((own, patch)) {
+                    *patch = id;
+                }
+            }
+        }
+    }
+}
+
+/// Labels the surfaces around the tissue: that of the organ, and interfaces between regions of the tissue.
+fn label_tissue<'a>(
+    faces: &mut Labelled,
+    layout: &Layout,
+    tissue: &[Tetrahedralization],
+    (first, name): (i32, &dyn Fn(usize) -> &'a str),
+    in_mesh: &dyn Fn(u32) -> u32,
+) {
+    for (k, (region, outside)) in tissue.iter().zip(&layout.outsides).enumerate() {
+        for (i, range) in &outside.of_surfaces {
+            // Region on the other side of the surface; the first surface has none.
+            let beyond = if *i == k { layout.around.map_or(0, |around| around.parents[*i]) } else { *i };
+            let patch = match (k, *i) {
+                (0, 0) => "organ".to_owned(),
+                // The region with the smaller id lists the face.
+                _ if beyond < k => continue,
+                _ => format!("interface_{}_{}", name(k), name(beyond)),
+            };
+            // Faces of a filled region face out of it.
+            let own = region.faces[range.clone()].iter();
+            let own = own.map(|t| t.map(|v| in_mesh(outside.numbers[v as usize])));
+            faces.add(&patch, first + k as i32, own);
+        }
+    }
 }

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 const CERTAIN: f64 = 0.95;
 
 impl DomainPlan {
-    /// Checks names and ranges, and that surfaces around the tissue and in it are closed, contain what they must, and do not
-    /// meet each other or vessels. `name` is the name of a node in the file.
+    /// Checks names and ranges, and the surfaces around the tissue and in it. These must be closed, must not meet each other or
+    /// vessels, and the outer one must contain all. `name` is the name of a node in the file.
     ///
     /// # Errors
     /// The first fault.

@@ -236,7 +236,7 @@ pub enum DomainPlanError {
         range: &'static str,
     },
     /// A surface is to be remeshed, and there is none.
-    #[error("nothing to remesh: a box or hull follows the size of the tissue by itself")]
+    #[error("nothing to remesh: a box or hull always has the size of the tissue")]
     Remesh,
 }
 
