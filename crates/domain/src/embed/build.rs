@@ -56,7 +56,7 @@ impl Embedding {
     pub fn of(network: &Skeleton, plan: &EmbedPlan, progress: &dyn Progress) -> Result<Self, DomainError> {
         plan.validate()?;
         let sources = sources(network, &plan.size, plan.max_tets)?;
-        let surface = surface(network, plan, &Watch::of(progress))?;
+        let surface = surface(network, &plan.tissue, &Watch::of(progress))?;
         let mesh = fill(plan, &surface, &sources, progress)?;
         drop((sources, surface));
         let pieces = Pieces::of(&mesh.mesh, network, progress)?;

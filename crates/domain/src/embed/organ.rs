@@ -1,10 +1,9 @@
 //! Surface around tissue with embedded vessels.
 
-use super::plan::EmbedPlan;
 use crate::error::DomainError;
 use crate::inside::{Closed, tidy};
 use crate::organ::{Vessels, box_around, organ, usual_margin};
-use crate::plan::TissueShape;
+use crate::plan::{TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Aabb, Point3};
@@ -13,18 +12,18 @@ use anastomesh_tet::parts::Watch;
 use rayon::prelude::*;
 
 /// Surface around the tissue.
-pub fn surface(network: &Skeleton, plan: &EmbedPlan, watch: &Watch) -> Result<TriMesh, DomainError> {
+pub fn surface(network: &Skeleton, tissue: &TissuePlan, watch: &Watch) -> Result<TriMesh, DomainError> {
     let points = network.nodes.iter().map(|node| node.position).collect();
     let nodes = TriMesh { points, triangles: Vec::new() };
     let outer = network.edges.iter().flat_map(|edge| edge.radii).fold(0.0, f64::max);
-    match &plan.tissue.shape {
+    match &tissue.shape {
         TissueShape::Box { margin } => {
             let margin = margin.unwrap_or_else(|| usual_margin(&nodes, outer));
-            Ok(box_around(&nodes, margin, plan.tissue.size))
+            Ok(box_around(&nodes, margin, tissue.size))
         }
         TissueShape::Hull { .. } => {
             let thickness = vec![0.0; nodes.points.len()];
-            organ(&plan.tissue, &Vessels { surface: &nodes, thickness: &thickness, outer }, watch)
+            organ(tissue, &Vessels { surface: &nodes, thickness: &thickness, outer }, watch)
         }
         TissueShape::Organ(surface) => Ok(tidy(surface)),
     }

@@ -145,7 +145,7 @@ fn interaction(lumen: &Part, solids: &[Part], flow: &Flow) -> String {
     text + "</Add_equation>\n\n"
 }
 
-/// True for surfaces of a solid that do not move: the ends of the wall, those of vessels in tissue, and the surface of the organ.
+/// True for surfaces of a solid that do not move: ends of walls, ends of vessels in tissue, and the organ's surface.
 fn is_held(patch: &Patch) -> bool {
     Role::of(patch) != Role::Wall || patch.name.starts_with("ring") || patch.name.starts_with("organ")
 }
