@@ -8,9 +8,7 @@ on its surface, and the ends do not move along the axis (plane strain). Quadrati
 the wall. Errors are the largest of the radial displacement at a point, relative to the largest exact one. Exit code 1 if the error
 at the finest resolution exceeds the bar. Needs numpy, scipy and meshio."""
 
-import argparse
 import sys
-from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sparse
@@ -100,16 +98,11 @@ def row(args, rho):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--program", default="anastomesh")
-    parser.add_argument("--rho", default="4,6")
+    parser = shells.arguments(__doc__, "4,6", 0.02)
     parser.add_argument("--poisson", type=float, default=0.3)
-    parser.add_argument("--bar", type=float, default=0.02)
     args = parser.parse_args()
-    args.folder.mkdir(parents=True, exist_ok=True)
     print("| ρ | tetrahedra | root mean square error | largest error |\n|---|---|---|---|")
-    errors = [row(args, int(rho)) for rho in args.rho.split(",")]
+    errors = shells.rows(args, row)
     sys.exit(0 if errors[-1] < args.bar else 1)
 
 

@@ -8,9 +8,7 @@ half the diffusivity in the wall, and the tissue consumes a constant rate. Linea
 compared with the exact solution. The error is the largest at a point, relative to the exact drop of the concentration. Exit code 1
 if the error at the finest resolution exceeds the bar, or does not fall with the resolution. Needs numpy, scipy and meshio."""
 
-import argparse
 import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -48,15 +46,10 @@ def row(args, rho):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--program", default="anastomesh")
-    parser.add_argument("--rho", default="6,9")
-    parser.add_argument("--bar", type=float, default=0.02)
+    parser = shells.arguments(__doc__, "6,9", 0.02)
     args = parser.parse_args()
-    args.folder.mkdir(parents=True, exist_ok=True)
     print("| ρ | tetrahedra | error of the lumen's radius | error |\n|---|---|---|---|")
-    errors = [row(args, int(rho)) for rho in args.rho.split(",")]
+    errors = shells.rows(args, row)
     is_good = errors[-1] < args.bar and all(a > b for a, b in zip(errors, errors[1:]))
     sys.exit(0 if is_good else 1)
 

@@ -8,11 +8,9 @@ run on the case without edits, then `splitMeshRegions` on a copy. The concentrat
 elements on the same tetrahedra: 1 on the lumen, 0 on the organ. Exit code 1 if a program fails, if the mean concentrations of a
 region differ by more than the bar at the finest resolution, or if the difference does not fall. Needs OpenFOAM, numpy, scipy and meshio."""
 
-import argparse
 import re
 import shutil
 import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -65,16 +63,11 @@ def row(args, rho):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--program", default="anastomesh")
-    parser.add_argument("--rho", default="3,5,8")
-    parser.add_argument("--bar", type=float, default=0.03)
+    parser = shells.arguments(__doc__, "3,5,8", 0.03)
     args = parser.parse_args()
-    args.folder.mkdir(parents=True, exist_ok=True)
     print("| ρ | tetrahedra | wall: OpenFOAM | elements | difference | tissue: OpenFOAM | elements | difference | unedited |")
     print("|---|---|---|---|---|---|---|---|---|")
-    rows = [row(args, int(rho)) for rho in args.rho.split(",")]
+    rows = shells.rows(args, row)
     errors = [error for error, _ in rows]
     falls = all(a > b for a, b in zip(errors, errors[1:]))
     sys.exit(0 if falls and errors[-1] < args.bar and not any(failed for _, failed in rows) else 1)

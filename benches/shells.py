@@ -1,6 +1,8 @@
-"""Meshes with regions for the benchmarks of solvers, and matrices of linear tetrahedra."""
+"""Meshes with regions for the benchmarks of solvers, their arguments, and matrices of linear tetrahedra."""
 
+import argparse
 import subprocess
+from pathlib import Path
 
 import meshio
 import numpy as np
@@ -55,3 +57,19 @@ def solve(matrix, load, fixed, values):
         raise RuntimeError("conjugate gradients do not converge")
     found[free] = answer
     return found
+
+
+def arguments(text, rho, bar):
+    """Parser of a benchmark with its default resolutions and bar."""
+    parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--program", default="anastomesh")
+    parser.add_argument("--rho", default=rho)
+    parser.add_argument("--bar", type=float, default=bar)
+    return parser
+
+
+def rows(args, row):
+    """Result of a row for each resolution."""
+    args.folder.mkdir(parents=True, exist_ok=True)
+    return [row(args, int(rho)) for rho in args.rho.split(",")]
