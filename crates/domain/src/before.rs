@@ -1,12 +1,11 @@
 //! Checks of a plan before a network is meshed.
 
 use super::error::DomainError;
-use super::inside::{Closed, tidy};
+use super::inside::{Closed, passes, tidy};
 use super::nested::{check_nested, name_of};
 use super::organ::{Vessels, organ};
 use super::plan::{DomainPlan, Site, TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3, point_triangle, segment_segment};
 use anastomesh_skeleton::{EdgeId, Skeleton};
 use anastomesh_tet::Tetrahedralizer;
@@ -131,15 +130,7 @@ fn meets(tube: &Tube, corners: [&Point3; 3]) -> Option<Point3> {
             return Some(side[0] + (side[1] - side[0]) * pair.t);
         }
     }
-    pierces(&tube.a, &tube.b, corners).then(|| middle(corners))
-}
-
-/// True if a segment passes through a triangle.
-fn pierces(p: &Point3, q: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
-    let sides = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
-    let turns = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
-    let passes = turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0);
-    sides[0] * sides[1] < 0.0 && passes
+    passes([&tube.a, &tube.b], corners, true).then(|| middle(corners))
 }
 
 fn middle([a, b, c]: [&Point3; 3]) -> Point3 {

@@ -61,6 +61,15 @@ fn is_on(p: &Point3, [a, b, c]: [&Point3; 3]) -> bool {
     orient3d(a, b, c, p) == 0.0 && (0..3).all(within)
 }
 
+/// True if a segment passes from one side of a triangle to the other. `touching`: also through an edge or corner.
+pub fn passes([p, q]: [&Point3; 2], [a, b, c]: [&Point3; 3], touching: bool) -> bool {
+    let (from, to) = (orient3d(a, b, c, p), orient3d(a, b, c, q));
+    let turns = || [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    let is_inner = |turn: f64| turn > 0.0 || touching && turn == 0.0;
+    let one_turn = |turns: [f64; 3]| turns.iter().all(|&t| is_inner(t)) || turns.iter().all(|&t| is_inner(-t));
+    (from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0) && one_turn(turns())
+}
+
 /// Triangles of the first surface that touch the second one, ascending.
 pub fn meeting(first: &TriMesh, second: &TriMesh) -> Vec<u32> {
     let shared = Aabb::of_points(&second.points);
