@@ -167,12 +167,12 @@ def main():
                     yield path.stem, form, surface
 
     def done():
-        """Rows in the order of the cases, few of which are there at a time: split twice they are large."""
+        """Rows in the order of the cases. Few wait at a time, since they are large when split twice."""
         waiting = []
         with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
             for one in cases():
                 waiting.append(pool.submit(case, args, *one))
-                if len(waiting) > args.jobs:
+                if len(waiting) > 4 * args.jobs:
                     yield waiting.pop(0).result()
             yield from (row.result() for row in waiting)
 

@@ -73,7 +73,7 @@ const RESTART_AFTER: u32 = 1;
 const MAX_RESTARTS: u32 = 3;
 
 /// Budget, relative to the first turn, from which all strategies are tried whatever the gain.
-const THOROUGH: u64 = 64;
+const THOROUGH: u64 = 256;
 
 /// Maximum operations of all starts: per triangle of the surface, plus a constant.
 const MAX_OPERATIONS: (u64, u64) = (50_000, 1_000_000_000);
