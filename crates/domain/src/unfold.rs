@@ -1,7 +1,7 @@
 //! Smoothing of a lumen's wall where it is folded, so that a shell fits.
 //!
-//! At a folded vertex no direction leads away from all triangles of the wall, and prisms would invert. The vertex and its
-//! neighbours move as far as necessary, and the tetrahedra of the lumen stay positive.
+//! At a folded vertex no direction leads away from all triangles of the wall, and prisms would invert. The vertex and those
+//! up to two edges away move as far as necessary, and the tetrahedra of the lumen stay positive.
 
 use super::surface::LumenSurface;
 use anastomesh_mesh::TetMesh;
@@ -15,9 +15,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// Openness below which a vertex is folded: the least cosine between its direction and the normals of its triangles.
 const FOLDED: f64 = 0.1;
 /// Passes over the folded vertices.
-const PASSES: usize = 12;
+const PASSES: usize = 30;
 /// Steps of a vertex, relative to its mean edge.
-const STEPS: [f64; 3] = [0.4, 0.15, 0.05];
+const STEPS: [f64; 5] = [0.4, 0.15, 0.05, 0.015, 0.005];
 
 /// Moves folded vertices of the wall. Returns the number of moved vertices.
 pub fn unfold(mesh: &mut TetMesh, lumen: &mut LumenSurface) -> usize {
@@ -27,14 +27,11 @@ pub fn unfold(mesh: &mut TetMesh, lumen: &mut LumenSurface) -> usize {
     if folded.is_empty() {
         return 0;
     }
-    let mut near: Vec<u32> = folded.iter().flat_map(|&v| wall.with_neighbours(v)).collect();
-    near.sort_unstable();
-    near.dedup();
+    let near = wall.around(&wall.around(&folded));
     let tets = tets_at(mesh, near.iter().map(|&v| lumen.points[v as usize]));
     let mut moved = FxHashSet::default();
     for _ in 0..PASSES {
-        let candidates: Vec<u32> = folded.iter().flat_map(|&v| wall.with_neighbours(v)).collect();
-        for v in candidates {
+        for v in wall.around(&wall.around(&folded)) {
             let vertex = lumen.points[v as usize];
             // Only vertices around those that were folded at first may move.
             let Some(tets) = tets.get(&vertex) else { continue };
@@ -83,6 +80,14 @@ impl Wall {
         around.filter(|v| !self.of_caps.contains(v)).collect()
     }
 
+    /// Some vertices and those around them that may move.
+    fn around(&self, vertices: &[u32]) -> Vec<u32> {
+        let mut all: Vec<u32> = vertices.iter().flat_map(|&v| self.with_neighbours(v)).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     fn folded(&self, vertices: &[u32]) -> Vec<u32> {
         vertices.par_iter().copied().filter(|&v| self.openness(v) < FOLDED).collect()
     }
@@ -95,9 +100,9 @@ impl Wall {
         openness(&self.at_vertex.get(v).iter().map(inward).collect::<Vec<Vec3>>())
     }
 
-    /// Least openness of a vertex and those around it.
-    fn around(&self, v: u32) -> f64 {
-        self.with_neighbours(v).into_iter().map(|v| self.openness(v)).fold(f64::INFINITY, f64::min)
+    /// What a vertex and those around it lack in openness, in sum.
+    fn lack(&self, v: u32) -> f64 {
+        self.with_neighbours(v).into_iter().map(|v| (FOLDED - self.openness(v)).max(0.0)).sum()
     }
 
     /// Place of a vertex at which it and those around it are more open.
@@ -106,17 +111,20 @@ impl Wall {
         let ring = self.neighbours.get(v);
         let length = |w: &u32| (self.points[*w as usize] - own).norm();
         let mean = ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64;
-        let mut best = (self.around(v), own);
+        let mut best = (self.lack(v), own);
+        let middle = ring.iter().map(|w| self.points[*w as usize].coords).sum::<Vec3>() / ring.len().max(1) as f64;
+        let middle = Point3::from(middle);
         for step in STEPS {
-            for way in ways() {
+            let smoother = (middle - own).try_normalize(0.0);
+            for way in ways().chain(smoother) {
                 let place = best.1 + way * (step * mean);
                 if !fits(&place) {
                     continue;
                 }
                 self.points[v as usize] = place;
-                let open = self.around(v);
-                if open > best.0 {
-                    best = (open, place);
+                let lack = self.lack(v);
+                if lack < best.0 {
+                    best = (lack, place);
                 }
             }
         }

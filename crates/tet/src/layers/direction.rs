@@ -40,6 +40,12 @@ impl Directions {
         steepness(way, &self.normals[v])
     }
 
+    /// Direction that also sees a further triangle from behind, with an outward normal; zero if there is none.
+    pub fn way_with(&self, v: usize, normal: Vec3) -> Vec3 {
+        let normals: Vec<Vec3> = self.normals[v].iter().copied().chain([normal]).collect();
+        inward_direction(&normals)
+    }
+
     /// Averages directions with those of neighbours, within the minimum steepness, except at held vertices.
     pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
         for _ in 0..PASSES {
@@ -60,11 +66,10 @@ impl Directions {
     }
 }
 
-/// Greatest minimum cosine between a direction and the reversed normals at a vertex. 0 if no direction leads away from all
-/// triangles.
+/// Greatest minimum cosine between a direction and the reversed normals at a vertex. Not above 0 if no direction leads away
+/// from all triangles.
 pub fn openness(normals: &[Vec3]) -> f64 {
-    let way = inward_direction(normals);
-    if way == Vec3::zeros() { 0.0 } else { steepness(&way, normals) }
+    steepest(normals).map_or(-1.0, |(seen, _)| seen)
 }
 
 /// Minimum cosine between an inward direction and the reversed normals.
@@ -72,20 +77,25 @@ fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
     normals.iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)
 }
 
-/// Inward direction at a vertex; zero if there is none. Decreasing steps towards the furthest normal converge to the
-/// centre of the smallest enclosing ball (Bădoiu, Clarkson 2003).
+/// Inward direction at a vertex; zero if there is none.
 fn inward_direction(normals: &[Vec3]) -> Vec3 {
+    steepest(normals).filter(|(seen, _)| *seen > 0.0).map_or(Vec3::zeros(), |(_, way)| way)
+}
+
+/// Steepest direction and its steepness. Decreasing steps towards the furthest normal converge to the centre of the smallest
+/// enclosing ball (Bădoiu, Clarkson 2003).
+fn steepest(normals: &[Vec3]) -> Option<(f64, Vec3)> {
     let mut middle: Vec3 = -normals.iter().sum::<Vec3>() / normals.len().max(1) as f64;
-    let mut best = (0.0, Vec3::zeros());
+    let mut best: Option<(f64, Vec3)> = None;
     for step in 1..=STEPS {
         let Some(way) = middle.try_normalize(0.0) else { break };
         let seen = steepness(&way, normals);
-        if seen > best.0 {
-            best = (seen, way);
+        if best.is_none_or(|(most, _)| seen > most) {
+            best = Some((seen, way));
         }
         let far = |a: &Vec3| (middle + *a).norm_squared();
         let Some(furthest) = normals.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { break };
         middle += (-furthest - middle) / f64::from(step + 1);
     }
-    best.1
+    best
 }

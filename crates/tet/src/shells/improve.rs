@@ -1,5 +1,6 @@
 //! Local search for outer positions where prisms are inverted or much flatter than their thickness requires.
 
+use super::directions::Side;
 use super::shell::{Shell, depths};
 use crate::layers::{Numbers, toward};
 use anastomesh_mesh::TriMesh;
@@ -23,8 +24,8 @@ pub(super) struct Improver<'a> {
     numbers: &'a Numbers,
     /// Fractions of the offset at which the copies of each vertex lie.
     depths: Vec<f64>,
-    /// Plane that a vertex at a rim stays in, by its normal; zero elsewhere.
-    planes: &'a [Vec3],
+    /// Where the outer position of each vertex may lie.
+    sides: &'a [Side],
     /// Quality of a right prism with the thickness wanted, at each triangle.
     ideal: Vec<f64>,
     /// Triangles at each vertex.
@@ -37,12 +38,12 @@ impl<'a> Improver<'a> {
         (surface, wall): (&'a TriMesh, &'a [[u32; 3]]),
         numbers: &'a Numbers,
         shells: &[Shell],
-        planes: &'a [Vec3],
+        sides: &'a [Side],
         heights: &[f64],
     ) -> Self {
         let depths = (0..surface.points.len()).flat_map(|v| depths(shells, v)).collect();
         let at_vertex = Incidence::of_cells(wall, surface.points.len());
-        let mut made = Self { surface, wall, numbers, depths, planes, ideal: Vec::new(), at_vertex };
+        let mut made = Self { surface, wall, numbers, depths, sides, ideal: Vec::new(), at_vertex };
         made.ideal = wall.par_iter().map(|t| made.right_prism(*t, heights)).collect();
         made
     }
@@ -94,21 +95,28 @@ impl<'a> Improver<'a> {
     fn candidates(&self, v: usize, from: &Point3, step: f64) -> Vec<Point3> {
         let offset = from - self.surface.points[v];
         let Some(way) = offset.try_normalize(0.0) else { return Vec::new() };
-        let plane = self.planes[v];
         let nearer = from - way * step;
-        let side = if plane == Vec3::zeros() { any_normal(&way) } else { way.cross(&plane) };
-        if plane != Vec3::zeros() {
-            return vec![nearer, from + side * step, from - side * step];
-        }
+        let side = match self.sides[v] {
+            Side::Flat(normal) => {
+                let side = way.cross(&normal);
+                return vec![nearer, from + side * step, from - side * step];
+            }
+            Side::Free | Side::Front(_) => any_normal(&way),
+        };
         let other = way.cross(&side);
         let beside = |i: u32| {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(TURNS);
             (side * angle.cos() + other * angle.sin()) * step
         };
         let shifts: Vec<Vec3> = (0..TURNS).map(beside).collect();
+        let may_be_at = |place: &Point3| match self.sides[v] {
+            Side::Front(normal) => (place - self.surface.points[v]).dot(&normal) >= 0.0,
+            Side::Free | Side::Flat(_) => true,
+        };
         std::iter::once(nearer)
             .chain(shifts.iter().map(|s| from + s))
             .chain(shifts.iter().map(|s| nearer + s))
+            .filter(may_be_at)
             .collect()
     }
 

@@ -43,7 +43,7 @@ pub(super) struct Settled<'a> {
 pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>, TetError> {
     let Given { surface, wall, caps, shells, around } = *given;
     let points = &surface.points;
-    let [ways, planes] = directions(surface, wall, caps);
+    let (ways, sides) = directions(surface, wall, caps);
     let stuck = |triangle: [u32; 3], reason| Err(TetError::Stuck { part: Obstacle::Triangle(triangle), reason });
     if let Some(&t) = wall.iter().find(|t| t.iter().any(|&v| ways[v as usize] == Vec3::zeros())) {
         return stuck(t, Stuck::Layer);
@@ -54,7 +54,7 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
     let is_rim = rims(surface, |t| caps[t].is_none());
     let numbers = Numbers::new(on_wall.iter().copied(), is_rim.clone(), shells.iter().map(|s| s.layers).sum());
     let outside = Outside::new(&numbers, given);
-    let improver = Improver::new((surface, wall), &numbers, shells, &planes, &heights);
+    let improver = Improver::new((surface, wall), &numbers, shells, &sides, &heights);
     let mut places = Places {
         surface,
         wall,
@@ -86,7 +86,8 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
         offsets.drawn_back = FACTORS[usize::from(pass >= PATIENT)];
         offsets.reduce_offsets(obstacles.as_flattened());
         let outer = offsets.inner();
-        let least = |t: &&[u32; 3]| t.iter().any(|&v| length(&outer, v as usize) < LEAST * wanted[v as usize]);
+        let is_least = |v: usize| on_wall[v] && length(&outer, v) < LEAST * wanted[v];
+        let least = |t: &&[u32; 3]| t.iter().any(|&v| is_least(v as usize));
         if let Some(&t) = obstacles.iter().find(least) {
             return stuck(t, reason);
         }
