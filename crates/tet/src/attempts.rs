@@ -35,7 +35,8 @@ const GROWTH: u64 = 4;
 /// Turns after which a start returns to the complex left by flips. Parts that are recovered may be in the way of others.
 const RETURN_AFTER: u32 = 3;
 
-/// A start is given up if flips leave more than this many times the parts of another start.
+/// A start is given up after its first turn if that leaves more than this many times the parts that flips of another start
+/// leave. Before that, exchanges in planes may recover most of them at once.
 const HOPELESS: usize = 4;
 
 /// Operations of each earlier start before a start begins, relative to the first turn of one strategy. The second number
@@ -92,7 +93,7 @@ struct Attempt<'a> {
     filled: bool,
     /// True if strategies have helped little.
     abandoned: bool,
-    /// True if flips have left far more parts than those of another start.
+    /// True if a turn has left far more parts than the flips of another start.
     hopeless: bool,
     /// Operations of other starts before this one begins.
     delay: u64,
@@ -321,6 +322,7 @@ impl<'a> Attempt<'a> {
             self.repeat(r, points, share, effort)?
         };
         self.spent += before - effort.left;
+        self.hopeless = self.missing() > effort.fewest.saturating_mul(HOPELESS);
         Ok(done)
     }
 
@@ -360,7 +362,7 @@ impl<'a> Attempt<'a> {
         loop {
             let before = self.missing();
             let done = self.run(r, points, share, effort)?;
-            if done.is_some() || effort.left == 0 || self.abandoned || self.hopeless || self.has_stalled(before) {
+            if done.is_some() || effort.left == 0 || self.abandoned || self.has_stalled(before) {
                 return Ok(done);
             }
         }
@@ -379,12 +381,7 @@ impl<'a> Attempt<'a> {
         {
             return Ok(Some(done));
         }
-        let parts = self.origin.as_ref().map_or(0, Origin::parts);
-        effort.fewest = effort.fewest.min(parts);
-        if parts > HOPELESS * effort.fewest {
-            self.hopeless = true;
-            return Ok(None);
-        }
+        effort.fewest = effort.fewest.min(self.origin.as_ref().map_or(usize::MAX, Origin::parts));
         let share = if self.passes.is_some() { PLANE_SHARE * share } else { share };
         let mut poor = 0;
         self.abandoned = false;

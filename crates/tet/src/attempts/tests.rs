@@ -108,3 +108,15 @@ fn starts_take_turns_by_the_operations_spent() {
         assert!(!again.repeats_start() && again.share() == GROWTH * GROWTH);
     });
 }
+
+#[test]
+fn a_start_with_many_missing_parts_takes_its_first_turn() {
+    let surface = pipe(24);
+    with_request(&surface, |r| {
+        let mut attempt = Attempt::fresh(None, &RecoveryStrategy::GIVEN);
+        let mut effort = Effort { fewest: 1, ..effort(u64::MAX) };
+        let done = attempt.turn(r, &surface.points, &mut effort).unwrap();
+        assert!(attempt.origin.as_ref().unwrap().parts() > HOPELESS);
+        assert!(done.is_some() && effort.left < u64::MAX);
+    });
+}
