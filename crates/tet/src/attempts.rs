@@ -22,6 +22,9 @@ const MAX_CONSTANT: u64 = 2_500_000;
 /// Factor of the budget for recovery in planes after few flips.
 const PLANE_SHARE: u64 = 2;
 
+/// Factor of the budget for strategies that recover edges in planes first, where rounding has turned the planes.
+const LEVEL_SHARE: u64 = 2;
+
 /// Missing edges and triangles, relative to the triangles, from which a surface in planes starts without flat tetrahedra.
 /// Exchanges in planes then take less time than cavities for each edge.
 const MANY: f64 = 0.5;
@@ -91,6 +94,8 @@ struct Attempt<'a> {
     /// True if the Delaunay complex gets points on both sides of the surface. Long edges then cross few tetrahedra, and the
     /// points are removed like other Steiner points.
     filled: bool,
+    /// Factor of the budget for strategies that recover edges in planes first.
+    level_share: u64,
     /// True if strategies have helped little.
     abandoned: bool,
     /// True if a turn has left far more parts than the flips of another start.
@@ -166,7 +171,8 @@ pub(super) fn recover_rest(
     let filled = filled(None, &RecoveryStrategy::GIVEN);
     let mut attempts: Vec<Attempt> = Vec::new();
     let many = (edges.len() + missing.triangles.len()) as f64 >= MANY * r.surface.triangles.len() as f64;
-    if edges_turned || (is_turned && many) {
+    let turned_first = edges_turned || (is_turned && many);
+    if turned_first {
         attempts.extend(turned.map(thick).into_iter().chain(filled_thick));
         attempts.extend([given, filled]);
     } else {
@@ -185,6 +191,7 @@ pub(super) fn recover_rest(
     let first = operations(r, fewest);
     for (place, attempt) in (0..).zip(&mut attempts) {
         attempt.delay = place * first * if place < EARLY { DELAY.0 } else { DELAY.1 };
+        attempt.level_share = if turned_first { LEVEL_SHARE } else { 1 };
     }
     while effort.left > 0 {
         let open = attempts.iter_mut().filter(|attempt| attempt.turns < MAX_TURNS && !attempt.hopeless);
@@ -236,6 +243,7 @@ impl<'a> Attempt<'a> {
             summary,
             passes: None,
             filled: false,
+            level_share: 1,
             abandoned: false,
             hopeless: false,
             delay: 0,
@@ -388,7 +396,8 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let budget = Budget::new(share * operations(r, recovery.missing()));
+            let room = if way.level.is_some() { self.level_share } else { 1 };
+            let budget = Budget::new(room * share * operations(r, recovery.missing()));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;
             effort.left = effort.left.saturating_sub(budget.spent());
