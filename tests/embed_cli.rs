@@ -122,7 +122,8 @@ fn embeddings_that_cannot_be_made_are_refused() {
     let small = text(&folder, "small.off", &BOX.replace("16", "12"));
     let small = small.to_str().expect("text");
     let out = folder.path().join("x.vtu");
-    let cases: [(&[&str], i32, &str); 8] = [
+    let cases: [(&[&str], i32, &str); 9] = [
+        (&["--rho", "3"], 2, "cannot be used with"),
         (&["--wall", "0.2r"], 2, "cannot be used with"),
         (&["--layers", "2"], 2, "cannot be used with"),
         (&["--embed-size", "0"], 2, "invalid edge length at the vessels 0"),

@@ -14,21 +14,25 @@ use anastomesh_io::surface::read_surface;
 use anastomesh_mesh::TriMesh;
 
 /// Options that need a lumen.
-const NOT_EMBEDDED: [&str; 23] = [
+const NOT_EMBEDDED: [&str; 27] = [
     "annulus",
     "as_is",
+    "core",
     "data",
     "dir",
     "drop_islands",
     "dry_run",
     "dump_dir",
+    "follow",
     "frozen_joints",
+    "joint",
     "keep_going",
     "layers",
     "prisms",
     "refine",
     "refined",
     "report",
+    "rho",
     "root",
     "shell",
     "size_at",

@@ -100,7 +100,7 @@ impl Wall {
         openness(&self.at_vertex.get(v).iter().map(inward).collect::<Vec<Vec3>>())
     }
 
-    /// What a vertex and those around it lack in openness, in sum.
+    /// Openness that a vertex and those around it lack, in sum.
     fn lack(&self, v: u32) -> f64 {
         self.with_neighbours(v).into_iter().map(|v| (FOLDED - self.openness(v)).max(0.0)).sum()
     }

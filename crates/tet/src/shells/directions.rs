@@ -11,7 +11,7 @@ const STEEP: f64 = 0.25;
 /// Shares of the wall's own direction that are added to one that is not steep enough.
 const TURNED: [f64; 3] = [0.5, 1.0, 2.0];
 
-/// Where the outer position of a vertex may lie.
+/// Region in which the outer position of a vertex may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Side {
     /// Anywhere outside the wall.

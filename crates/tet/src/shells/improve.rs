@@ -24,7 +24,7 @@ pub(super) struct Improver<'a> {
     numbers: &'a Numbers,
     /// Fractions of the offset at which the copies of each vertex lie.
     depths: Vec<f64>,
-    /// Where the outer position of each vertex may lie.
+    /// Region in which the outer position of each vertex may lie.
     sides: &'a [Side],
     /// Quality of a right prism with the thickness wanted, at each triangle.
     ideal: Vec<f64>,
