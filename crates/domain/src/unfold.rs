@@ -113,9 +113,8 @@ impl Wall {
         let mean = ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64;
         let mut best = (self.lack(v), own);
         let middle = ring.iter().map(|w| self.points[*w as usize].coords).sum::<Vec3>() / ring.len().max(1) as f64;
-        let middle = Point3::from(middle);
+        let smoother = (middle - own.coords).try_normalize(0.0);
         for step in STEPS {
-            let smoother = (middle - own).try_normalize(0.0);
             for way in ways().chain(smoother) {
                 let place = best.1 + way * (step * mean);
                 if !fits(&place) {

@@ -94,8 +94,6 @@ struct Attempt<'a> {
     /// True if the Delaunay complex gets points on both sides of the surface. Long edges then cross few tetrahedra, and the
     /// points are removed like other Steiner points.
     filled: bool,
-    /// Factor of the budget for strategies that recover edges in planes first.
-    level_share: u64,
     /// True if strategies have helped little.
     abandoned: bool,
     /// True if a turn has left far more parts than the flips of another start.
@@ -136,6 +134,8 @@ struct Effort {
     last: TetError,
     /// Fewest parts that the flips of a start have left.
     fewest: usize,
+    /// Factor of the budget for strategies that recover edges in planes first.
+    level_share: u64,
 }
 
 /// Complex with the whole surface.
@@ -187,11 +187,11 @@ pub(super) fn recover_rest(
     attempts.push(Attempt::thick(turned.unwrap_or(flat), &RecoveryStrategy::LAST));
     let whole = MAX_OPERATIONS.0 * r.surface.triangles.len() as u64 + MAX_OPERATIONS.1;
     let fewest = edges.len() + missing.triangles.len();
-    let mut effort = Effort { left: whole, last, fewest };
+    let level_share = if turned_first { LEVEL_SHARE } else { 1 };
+    let mut effort = Effort { left: whole, last, fewest, level_share };
     let first = operations(r, fewest);
     for (place, attempt) in (0..).zip(&mut attempts) {
         attempt.delay = place * first * if place < EARLY { DELAY.0 } else { DELAY.1 };
-        attempt.level_share = if turned_first { LEVEL_SHARE } else { 1 };
     }
     while effort.left > 0 {
         let open = attempts.iter_mut().filter(|attempt| attempt.turns < MAX_TURNS && !attempt.hopeless);
@@ -243,7 +243,6 @@ impl<'a> Attempt<'a> {
             summary,
             passes: None,
             filled: false,
-            level_share: 1,
             abandoned: false,
             hopeless: false,
             delay: 0,
@@ -330,7 +329,9 @@ impl<'a> Attempt<'a> {
             self.repeat(r, points, share, effort)?
         };
         self.spent += before - effort.left;
-        self.hopeless = self.missing() > effort.fewest.saturating_mul(HOPELESS);
+        // The start with the fewest parts always goes on.
+        let parts = self.origin.as_ref().map_or(0, Origin::parts).min(self.missing());
+        self.hopeless = parts > effort.fewest.saturating_mul(HOPELESS);
         Ok(done)
     }
 
@@ -396,7 +397,7 @@ impl<'a> Attempt<'a> {
         for &way in self.ways {
             let Some(recovery) = &mut self.recovery else { return Ok(None) };
             let before = recovery.missing();
-            let room = if way.level.is_some() { self.level_share } else { 1 };
+            let room = if way.level.is_some() { effort.level_share } else { 1 };
             let budget = Budget::new(room * share * operations(r, recovery.missing()));
             let result = recovery.attempt(way, share, &r.watch.within(&budget));
             r.watch.spend(budget.spent() as usize)?;

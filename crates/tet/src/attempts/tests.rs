@@ -60,7 +60,7 @@ fn with_request<T>(surface: &TriMesh, run: impl FnOnce(&Request) -> T) -> T {
 
 fn effort(left: u64) -> Effort {
     let last = TetError::NotRecovered { edges: Vec::new(), triangles: Vec::new() };
-    Effort { left, last, fewest: usize::MAX }
+    Effort { left, last, fewest: usize::MAX, level_share: 1 }
 }
 
 #[test]

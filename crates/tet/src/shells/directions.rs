@@ -44,7 +44,7 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
     (ways.ways, sides)
 }
 
-/// Direction at a vertex of a rim: in the plane of the cap if that is steep enough, else before it.
+/// Direction at a vertex of a rim: in the plane of the cap if that is steep enough, else to its front.
 fn at_rim(ways: &Directions, v: usize, flat: Vec3, normal: Vec3) -> (Vec3, Side) {
     let is_steep = |way: &Vec3| ways.steepness(v, way) >= STEEP;
     if is_steep(&flat) {
