@@ -8,13 +8,16 @@ use super::exit::Failure;
 use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
-use anastomesh_domain::{DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
-use anastomesh_io::network::NetworkFormat;
+use anastomesh_domain::{
+    CutNetwork, DomainError, DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape, VesselEnds,
+};
+use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote};
 use anastomesh_io::surface::read_surface;
 use anastomesh_mesh::TriMesh;
+use anastomesh_skeleton::NodeId;
 
 /// Options that need a lumen.
-const NOT_EMBEDDED: [&str; 27] = [
+const NOT_EMBEDDED: [&str; 28] = [
     "annulus",
     "as_is",
     "core",
@@ -38,6 +41,7 @@ const NOT_EMBEDDED: [&str; 27] = [
     "size_at",
     "split_regions",
     "stretch",
+    "tissue_ends",
     "tissue_region",
     "tissue_remesh",
     "wall",
@@ -84,6 +88,9 @@ pub struct DomainArgs {
     /// Remesh the surfaces of tissue and regions to `--tissue-size`, or with even triangles of their own size
     #[arg(long, requires = "tissue")]
     tissue_remesh: bool,
+    /// Where vessels end that leave the surface of a file around the tissue
+    #[arg(long, value_enum, default_value_t = EndsArg::Surface, requires = "tissue")]
+    tissue_ends: EndsArg,
     /// Maximum distance between a surface and the remeshed one (default: 0.001 of the diagonal)
     #[arg(long, value_name = "LENGTH", value_parser = above_zero, requires = "tissue_remesh", allow_negative_numbers = true)]
     tissue_tolerance: Option<f64>,
@@ -97,6 +104,17 @@ pub struct DomainArgs {
     /// numbers in the whole mesh (`GlobalNodeID`, `GlobalElementID`)
     #[arg(long)]
     split_regions: bool,
+}
+
+/// Ends of vessels that leave the organ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum EndsArg {
+    /// At the surface, which is opened there
+    Surface,
+    /// Inside, at 1.5 radii from the surface
+    Inside,
+    /// Refuse such networks
+    Refuse,
 }
 
 /// Text that can be read as a `T`.
@@ -288,6 +306,28 @@ impl DomainArgs {
         Ok(plan)
     }
 
+    /// Cuts vessels that leave the organ, and adds their ends to the plan. `roots` are requested inlets.
+    pub fn cut(&self, file: &mut NetworkFile, plan: &mut DomainPlan, roots: &[String]) -> Result<(), DomainError> {
+        let (ends, Some(tissue)) = (self.tissue_ends, &plan.tissue) else { return Ok(()) };
+        if ends == EndsArg::Refuse || !matches!(tissue.shape, TissueShape::Organ(_)) {
+            return Ok(());
+        }
+        let ends = if ends == EndsArg::Inside { VesselEnds::Inside } else { VesselEnds::AtSurface };
+        let asked = roots.iter().filter_map(|name| file.names.find(name, file.skeleton.nodes.len()));
+        let roots: Vec<u32> = file.roots.iter().copied().chain(asked).map(|node| node.0).collect();
+        let CutNetwork { network, gates, report, .. } = CutNetwork::of(&file.skeleton, plan, ends, &roots)?;
+        if let Some((node, at)) = report.first {
+            let (vessels, removed) = (report.vessels, report.outside + report.inside);
+            let node = file.names.of(NodeId(node));
+            file.notes.push(NetworkNote::Cut { vessels, node, at, removed });
+        }
+        file.skeleton = network;
+        if let Some(tissue) = &mut plan.tissue {
+            tissue.gates = gates;
+        }
+        Ok(())
+    }
+
     fn tissue(&self, shape: TissueArg) -> Result<TissuePlan, Failure> {
         let regions: Result<_, Failure> =
             self.tissue_region.iter().map(|text| read::<RegionArg>(text)?.region()).collect();
@@ -336,6 +376,9 @@ impl DomainArgs {
         if self.embed {
             add("embed-size", &self.embed_size);
             words.push(" --embed".into());
+        }
+        if self.tissue.is_some() && self.tissue_ends == EndsArg::Inside {
+            words.push(" --tissue-ends inside".into());
         }
         if self.tissue_remesh {
             words.push(" --tissue-remesh".into());

@@ -182,7 +182,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--work-dir cannot store smoothed joints: give --joint disc or --frozen-joints"));
     }
     let flow = args.flow.plan()?;
-    let domain = args.domain.plan(&args.network)?;
+    let mut domain = args.domain.plan(&args.network)?;
     args.fidelity.limits()?;
     let shard = args.work.shard(&plan)?;
     let format = args.format.of(&args.output)?;
@@ -206,7 +206,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         ensure_network_writable(path).map_err(|e| Failure::input(e.to_string()))?;
     }
     let pool = thread_pool(args.common.threads)?;
-    let prepared = pool.install(|| args.prepared(plan, flow))?;
+    let prepared = pool.install(|| args.prepared(plan, flow, &mut domain))?;
     let Networks { prepared: network, names, .. } = &prepared.networks;
     let checked = pool.install(|| domain.check(network, &|node| names.of(NodeId(node))));
     checked.map_err(|e| args.no_regions(&e))?;
@@ -284,10 +284,11 @@ impl Args {
         if self.layers.layers.is_some() { 1.0 } else { self.blocks.stretch.max(1.0).sqrt().min(COARSEST_CORE) }
     }
 
-    /// Reads and prepares the network.
-    fn prepared(&self, mut plan: MeshPlan, flow: FlowPlan) -> Result<PreparedRun, Failure> {
+    /// Reads and prepares the network. Vessels that leave the organ are cut.
+    fn prepared(&self, mut plan: MeshPlan, flow: FlowPlan, domain: &mut DomainPlan) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
-        let file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
+        let mut file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
+        self.domain.cut(&mut file, domain, &self.root).map_err(|e| self.no_regions(&e))?;
         let [inlets, outlets] = self.flow.extension();
         let mut run = Run::new(file).plan(plan).prepare(cures).roots(&self.root).extend(inlets, outlets);
         run = run.flow(flow);

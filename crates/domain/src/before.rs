@@ -7,13 +7,15 @@ use super::organ::{Vessels, organ};
 use super::plan::{DomainPlan, Site, TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3, point_triangle, segment_segment};
-use anastomesh_skeleton::{EdgeId, Skeleton};
+use anastomesh_skeleton::{EdgeId, Node, Skeleton};
 use anastomesh_tet::Tetrahedralizer;
 use anastomesh_tet::parts::Watch;
 use rayon::prelude::*;
 
 /// Fraction of the radius within which a surface certainly meets the lumen, whose radius is exact to a few percent.
 const CERTAIN: f64 = 0.95;
+/// Distance from the end of a vessel, in its radii, within which it may meet the surface where it leaves.
+const AT_GATE: f64 = 3.0;
 
 impl DomainPlan {
     /// Checks names and ranges, and the surfaces around the tissue and in it. These must be closed, must not meet each other or
@@ -26,7 +28,7 @@ impl DomainPlan {
         let Some(tissue) = &self.tissue else { return Ok(()) };
         if let TissueShape::Organ(surface) = &tissue.shape {
             Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
-            contains_nodes(surface, network, false, name)?;
+            contains_nodes(surface, network, &tissue.gates, false, name)?;
             crosses_none(surface, 0, (tissue, network), name)?;
         }
         for region in &tissue.regions {
@@ -67,16 +69,19 @@ impl DomainPlan {
     }
 }
 
-/// Checks that an organ's surface contains the nodes of a network. `touching`: nodes exactly on the surface are inside.
+/// Checks that an organ's surface contains the nodes of a network, except at gates. `touching`: nodes exactly on the surface
+/// are inside.
 pub fn contains_nodes(
     organ: &TriMesh,
     network: &Skeleton,
+    gates: &[u32],
     touching: bool,
     name: &dyn Fn(u32) -> String,
 ) -> Result<(), DomainError> {
     let closed = Closed::new(organ);
     let is_inside = |p: &Point3| closed.contains(p) || touching && closed.touches(p);
-    let outside: Vec<_> = network.nodes.par_iter().filter(|node| !is_inside(&node.position)).collect();
+    let is_fault = |node: &&Node| !gates.contains(&node.original) && !is_inside(&node.position);
+    let outside: Vec<_> = network.nodes.par_iter().filter(is_fault).collect();
     match outside.first() {
         Some(node) => {
             let (node, at) = (name(node.original), node.position.coords.into());
@@ -95,7 +100,8 @@ fn crosses_none(
 ) -> Result<(), DomainError> {
     let closed = Closed::new(surface);
     let edges: Vec<EdgeId> = network.edge_ids().collect();
-    let crossing = |&edge: &EdgeId| Some((edge, contact(&closed, &network.tube(edge))?));
+    let gates = if number == 0 { ends(plan, network) } else { Vec::new() };
+    let crossing = |&edge: &EdgeId| Some((edge, contact(&closed, &network.tube(edge), &gates)?));
     let found: Vec<(EdgeId, Point3)> = edges.par_iter().filter_map(crossing).collect();
     let Some(&(edge, at)) = found.first() else { return Ok(()) };
     Err(DomainError::VesselsCross {
@@ -107,12 +113,21 @@ fn crosses_none(
     })
 }
 
-/// Place where a surface meets a tube.
-fn contact(closed: &Closed, tube: &Tube) -> Option<Point3> {
+/// Places and radii of the vessels' ends where they leave the organ.
+pub fn ends(plan: &TissuePlan, network: &Skeleton) -> Vec<(Point3, f64)> {
+    let adjacency = network.adjacency();
+    let terminals = adjacency.terminals().into_iter().map(|node| network.node(node));
+    let leaving = terminals.filter(|node| plan.gates.contains(&node.original));
+    leaving.map(|node| (node.position, node.radius)).collect()
+}
+
+/// Place where a surface meets a tube, away from gates.
+fn contact(closed: &Closed, tube: &Tube, gates: &[(Point3, f64)]) -> Option<Point3> {
     let place = Aabb::of_points([&tube.a, &tube.b]).grown(tube.max_radius());
     let mut near = closed.near(&place);
     near.sort_unstable();
-    near.into_iter().find_map(|t| meets(tube, closed.corners(t)))
+    let is_apart = |p: &Point3| gates.iter().all(|(end, radius)| (p - end).norm() > AT_GATE * radius);
+    near.into_iter().filter_map(|t| meets(tube, closed.corners(t))).find(is_apart)
 }
 
 /// Place where a triangle meets the inner part of a tube.

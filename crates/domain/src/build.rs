@@ -1,13 +1,16 @@
 //! Regions around a lumen: shells, then tissue, then one mesh of all.
 
 use super::assemble::assemble;
+use super::before::ends;
 use super::error::DomainError;
+use super::gate::Gate;
 use super::layout::Layout;
 use super::organ::{Surroundings, Vessels};
 use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan};
 use super::surface::LumenSurface;
 use super::unfold::unfold;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
+use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::{Skeleton, Tubes};
@@ -67,11 +70,15 @@ impl Domain {
         let outer = sites.iter().zip(&thickness).map(|(site, own)| site.radius + own).fold(0.0, f64::max);
         let vessels = Vessels { surface: &surface.surface, thickness: &thickness, outer };
         let watch = Watch::asking(progress);
-        let around = plan.tissue.as_ref().map(|tissue| Surroundings::of(tissue, &vessels, &watch)).transpose()?;
+        let surround = |tissue: &TissuePlan| {
+            let places: Vec<Point3> = ends(tissue, network).into_iter().map(|(place, _)| place).collect();
+            Surroundings::of(tissue, &vessels, Gate::find(&surface, &thickness, &places)?, &watch)
+        };
+        let around = plan.tissue.as_ref().map(surround).transpose()?;
         let obstacles = around.as_ref().map(Surroundings::joined);
         let shells = shells(&surface, &sites, &plan.shells, obstacles.as_ref(), progress)?;
         let report = (!plan.shells.is_empty()).then(|| ShellsReport { moved, ..report(&shells, &surface) });
-        let layout = Layout::new(&surface, &shells, around.as_ref());
+        let layout = Layout::new(&surface, &shells, around.as_ref())?;
         let fill = |tissue| layout.outsides().map(|outside| fill(tissue, outside, progress)).collect();
         let tissue: Vec<Tetrahedralization> = plan.tissue.as_ref().map_or(Ok(Vec::new()), fill)?;
         let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);

@@ -150,12 +150,52 @@ pub enum DomainError {
         /// Place of the first.
         at: [f64; 3],
     },
+    /// All vessels lie outside the organ.
+    #[error("no vessel lies inside the surface around the tissue: give the surface in the unit of the network, and at its place")]
+    NoVesselInside,
+    /// A node outside the organ joins two vessels that lead inside.
+    #[error("vessels leave the surface around the tissue and return at node {node} at {}: remove the node, or give a surface around it", place(*at))]
+    LeavesTwice {
+        /// Node of the network as it was read.
+        node: u32,
+        /// Place of the second cut.
+        at: [f64; 3],
+    },
+    /// The organ cannot be opened where a vessel leaves.
+    #[error("the surface around the tissue cannot be opened for the vessel at {}: {fault}", place(*at))]
+    Gate {
+        /// Place.
+        at: [f64; 3],
+        /// Reason.
+        fault: GateFault,
+    },
     /// The tissue cannot be filled.
     #[error("the tissue could not be filled: {0}")]
     Tissue(TetError),
     /// The vessels cannot be divided between the cells of the tissue.
     #[error(transparent)]
     Pieces(#[from] PiecesError),
+}
+
+/// Reason why an organ cannot be opened where a vessel leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GateFault {
+    /// No vessel ends there.
+    #[error("its end was moved; let the vessel end inside")]
+    NoEnd,
+    /// The surface is too far from the end.
+    #[error("it ends far from the surface; let it end inside")]
+    Far,
+    /// The vessel leaves at a small angle to the surface.
+    #[error("it leaves at a small angle; let it end inside")]
+    Flat,
+    /// The surface is too rough there.
+    #[error("the surface is too rough there; smooth it, or let the vessel end inside")]
+    Rim,
+    /// Another vessel leaves beside it.
+    #[error("another vessel leaves beside it; let one of them end inside")]
+    Close,
 }
 
 fn lie(count: usize, what: &str) -> String {

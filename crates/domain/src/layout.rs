@@ -2,6 +2,7 @@
 //!
 //! Numbers count the points of the lumen's surface, then those of the shells, then those of the surfaces around the tissue.
 
+use super::error::DomainError;
 use super::organ::Surroundings;
 use super::surface::LumenSurface;
 use anastomesh_mesh::TriMesh;
@@ -30,16 +31,24 @@ pub struct Outside {
 }
 
 impl<'a> Layout<'a> {
-    pub fn new(lumen: &'a LumenSurface, shells: &'a Shells, around: Option<&'a Surroundings>) -> Self {
+    /// Boundaries of all regions.
+    ///
+    /// # Errors
+    /// The opening of the organ for a vessel cannot be joined to the vessel's end.
+    pub fn new(
+        lumen: &'a LumenSurface,
+        shells: &'a Shells,
+        around: Option<&'a Surroundings>,
+    ) -> Result<Self, DomainError> {
         let mut layout = Self { lumen, shells, around, outsides: Vec::new(), homes: Vec::new() };
-        let Some(around) = around else { return layout };
-        let vessels = layout.vessels();
+        let Some(around) = around else { return Ok(layout) };
+        let vessels = layout.vessels(&|cap| around.openings.iter().all(|opening| opening.gate.cap != cap));
         if around.surfaces.len() > 1 {
             layout.homes = layout.find_homes(&vessels, around);
         }
         let outsides = (0..around.surfaces.len()).map(|region| layout.outside(region, &vessels, around));
-        layout.outsides = outsides.collect();
-        layout
+        layout.outsides = outsides.collect::<Result<_, _>>()?;
+        Ok(layout)
     }
 
     /// Boundaries of the regions around the vessels, the tissue first.
@@ -52,18 +61,26 @@ impl<'a> Layout<'a> {
         self.homes.get(v as usize).copied().unwrap_or(0)
     }
 
-    /// Outer surface of the vessels.
-    fn vessels(&self) -> Vec<[u32; 3]> {
+    /// Outer surface of the vessels, with some of their ends.
+    fn vessels(&self, has_end: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
         let Self { lumen, shells, .. } = *self;
-        let capped = lumen.surface.triangles.iter().zip(&lumen.caps);
-        let own = |is_cap: bool| capped.clone().filter(move |(_, cap)| cap.is_some() == is_cap).map(|(t, _)| *t);
         let mut triangles: Vec<[u32; 3]> = match shells.sides.last() {
             Some(outer) => outer.clone(),
-            None => own(false).collect(),
+            None => {
+                let wall = lumen.surface.triangles.iter().zip(&lumen.caps).filter(|(_, cap)| cap.is_none());
+                wall.map(|(t, _)| *t).collect()
+            }
         };
-        triangles.extend(own(true));
-        triangles.extend(shells.rings.iter().flat_map(|ring| &ring.triangles));
+        triangles.extend(self.ends(has_end));
         triangles
+    }
+
+    /// Ends of vessels with their shells.
+    fn ends(&self, of: &dyn Fn(u32) -> bool) -> impl Iterator<Item = [u32; 3]> {
+        let Self { lumen, shells, .. } = *self;
+        let caps = lumen.surface.triangles.iter().zip(&lumen.caps).filter(move |(_, cap)| cap.is_some_and(of));
+        let rings = shells.rings.iter().filter(move |ring| of(ring.cap));
+        caps.map(|(t, _)| *t).chain(rings.flat_map(|ring| ring.triangles.iter().copied()))
     }
 
     fn place(&self, v: u32, around: &Surroundings) -> Point3 {
@@ -95,8 +112,12 @@ impl<'a> Layout<'a> {
     }
 
     /// Boundary of a region: the vessels in it, its own surface, and the surfaces in it.
-    fn outside(&self, region: usize, vessels: &[[u32; 3]], around: &Surroundings) -> Outside {
+    fn outside(&self, region: usize, vessels: &[[u32; 3]], around: &Surroundings) -> Result<Outside, DomainError> {
         let mut triangles: Vec<[u32; 3]> = vessels.iter().filter(|t| self.home(t[0]) == region).copied().collect();
+        if region == 0 && !around.openings.is_empty() {
+            // The organ's surface, which faces out of the tissue, continues in them.
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
         let mut of_surfaces = Vec::new();
         let inner = (1..around.surfaces.len()).filter(|&i| around.parents[i] == region && i != region);
         for i in [region].into_iter().chain(inner) {
@@ -104,6 +125,12 @@ impl<'a> Layout<'a> {
             let first = (self.lumen.surface.points.len() + self.shells.points.len() + before) as u32;
             let start = triangles.len();
             triangles.extend(around.surfaces[i].triangles.iter().map(|t| t.map(|v| v + first)));
+            if i == 0 {
+                for opening in &around.openings {
+                    let place = |v| self.place(v, around);
+                    triangles.extend(opening.ring(self.ends(&|cap| cap == opening.gate.cap), first, &place)?);
+                }
+            }
             of_surfaces.push((i, start..triangles.len()));
         }
         let mut numbers = triangles.as_flattened().to_vec();
@@ -112,6 +139,6 @@ impl<'a> Layout<'a> {
         let own: FxHashMap<u32, u32> = numbers.iter().copied().zip(0..).collect();
         triangles.as_flattened_mut().iter_mut().for_each(|v| *v = own[v]);
         let points = numbers.iter().map(|&v| self.place(v, around)).collect();
-        Outside { boundary: TriMesh { points, triangles }, numbers, of_surfaces }
+        Ok(Outside { boundary: TriMesh { points, triangles }, numbers, of_surfaces })
     }
 }

@@ -16,6 +16,7 @@
 //! | to | use |
 //! |---|---|
 //! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`], [`TissueRegion`] |
+//! | cut vessels that leave the organ | [`CutNetwork`] |
 //! | carry out the plan | [`Domain::around`] |
 //! | embed vessels as lines in tissue | [`EmbedPlan`], [`Embedding`], [`Pieces`] |
 //!
@@ -23,9 +24,12 @@
 
 mod assemble;
 mod before;
+mod bisect;
 mod build;
+mod cut;
 mod embed;
 mod error;
+mod gate;
 mod hull;
 mod inside;
 mod layout;
@@ -37,8 +41,9 @@ mod unfold;
 mod without;
 
 pub use build::{Domain, ShellsReport};
+pub use cut::{CutNetwork, CutReport, VesselEnds};
 pub use embed::{EmbedPlan, Embedding, Piece, PieceFault, Pieces, PiecesError};
-pub use error::DomainError;
+pub use error::{DomainError, GateFault};
 pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
 
 /// The example of the README is a test.

@@ -1,6 +1,7 @@
 //! Surfaces around the tissue: the organ's surface, and those of regions in it.
 
 use super::error::DomainError;
+use super::gate::{Gate, Opening, open};
 use super::hull::{RATIO, Sphere, hull};
 use super::inside::{Closed, meeting, tidy};
 use super::nested::{check_nested, parents};
@@ -27,15 +28,17 @@ pub struct Vessels<'a> {
 
 /// Surfaces around the tissue.
 pub struct Surroundings {
-    /// Surface of the organ, then those of the regions in it, outwards.
+    /// Surface of the organ with its openings, then those of the regions in it, outwards.
     pub surfaces: Vec<TriMesh>,
+    /// Openings of the organ's surface where vessels leave.
+    pub openings: Vec<Opening>,
     /// Surface that directly contains each; 0 for the first.
     pub parents: Vec<usize>,
 }
 
 impl Surroundings {
-    /// Surfaces around vessels, which they do not touch.
-    pub fn of(plan: &TissuePlan, vessels: &Vessels, watch: &Watch) -> Result<Self, DomainError> {
+    /// Surfaces around vessels, which they touch only at gates.
+    pub fn of(plan: &TissuePlan, vessels: &Vessels, gates: Vec<Gate>, watch: &Watch) -> Result<Self, DomainError> {
         let mut surfaces = vec![organ(plan, vessels, watch)?];
         surfaces.extend(plan.regions.iter().map(|region| tidy(&region.surface)));
         if plan.remesh {
@@ -43,8 +46,10 @@ impl Surroundings {
             let given = usize::from(!matches!(plan.shape, TissueShape::Organ(_)));
             remesh(&mut surfaces[given..], (plan.size, plan.tolerance), watch)?;
         }
-        holds(&surfaces[0], vessels.surface)?;
         check_nested(&surfaces, plan)?;
+        let (opened, openings) = open(&surfaces[0], gates)?;
+        holds(&surfaces[0], vessels.surface, (&opened, &openings))?;
+        surfaces[0] = opened;
         for (surface, region) in surfaces[1..].iter().zip(&plan.regions) {
             let met = meeting(vessels.surface, surface);
             if let Some(&t) = met.first() {
@@ -53,7 +58,7 @@ impl Surroundings {
             }
         }
         let parents = parents(&surfaces);
-        Ok(Self { surfaces, parents })
+        Ok(Self { surfaces, openings, parents })
     }
 
     /// All surfaces as one.
@@ -189,14 +194,20 @@ fn first_corner(surface: &TriMesh, t: [u32; 3]) -> [f64; 3] {
     surface.points[t[0] as usize].coords.into()
 }
 
-/// Checks that vessels lie inside a closed surface and do not touch it.
-fn holds(organ: &TriMesh, vessels: &TriMesh) -> Result<(), DomainError> {
-    let meeting = meeting(vessels, organ);
+/// Checks that vessels lie inside a closed surface, except at its openings, and do not touch it. `opened` is the surface
+/// with the openings.
+fn holds(
+    organ: &TriMesh,
+    vessels: &TriMesh,
+    (opened, openings): (&TriMesh, &[Opening]),
+) -> Result<(), DomainError> {
+    let meeting = meeting(vessels, opened);
     if let Some(&t) = meeting.first() {
         let at = first_corner(vessels, vessels.triangles[t as usize]);
         return Err(DomainError::VesselsOutside { count: meeting.len(), outside: false, at });
     }
-    let outside = Closed::new(organ).outside(vessels);
+    let mut outside = Closed::new(organ).outside(vessels);
+    outside.retain(|t| openings.iter().all(|opening| !opening.gate.is_near(&vessels.points[t[0] as usize])));
     match outside.first() {
         Some(&t) => {
             Err(DomainError::VesselsOutside { count: outside.len(), outside: true, at: first_corner(vessels, t) })
@@ -217,8 +228,8 @@ mod tests {
         for (margin, size) in [(usual_margin(&ball, 0.1), None), (0.5, Some(0.7)), (2.0, Some(50.0))] {
             let around = box_around(&ball, margin, size);
             Tetrahedralizer::new().check(&around).expect("closed");
-            assert!(holds(&around, &ball).is_ok());
-            let fault = holds(&ball, &around);
+            assert!(holds(&around, &ball, (&around, &[])).is_ok());
+            let fault = holds(&ball, &around, (&ball, &[]));
             assert!(matches!(fault, Err(DomainError::VesselsOutside { outside: true, .. })), "{fault:?}");
         }
     }
@@ -227,7 +238,7 @@ mod tests {
     fn vessels_that_leave_the_organ_are_named() {
         let ball = sphere_surface(2);
         let moved = TriMesh { points: ball.points.iter().map(|p| p + Vec3::x()).collect(), ..ball.clone() };
-        match holds(&ball, &moved) {
+        match holds(&ball, &moved, (&ball, &[])) {
             Err(DomainError::VesselsOutside { count, outside: false, at }) => {
                 assert!(count > 4 && (Vec3::from(at).norm() - 1.0).abs() < 0.5, "{count} {at:?}");
             }

@@ -142,6 +142,9 @@ pub struct TissuePlan {
     pub size: Option<f64>,
     /// Maximum ratio of edge lengths in adjacent layers of tetrahedra, away from the vessels.
     pub growth: f64,
+    /// Terminals, as nodes of the network that was read, at which vessels leave the organ; see
+    /// [`CutNetwork`](super::CutNetwork). Its surface is opened there.
+    pub gates: Vec<u32>,
 }
 
 anastomesh_mesh::setters!(TissuePlan {
@@ -150,6 +153,7 @@ anastomesh_mesh::setters!(TissuePlan {
     tolerance: impl Into<Option<f64>>,
     size: impl Into<Option<f64>>,
     growth: f64,
+    gates: Vec<u32>,
 });
 
 impl TissuePlan {
@@ -158,7 +162,8 @@ impl TissuePlan {
 
     /// Tissue of this shape.
     pub fn new(shape: TissueShape) -> Self {
-        Self { shape, regions: Vec::new(), remesh: false, tolerance: None, size: None, growth: Self::GROWTH }
+        let (regions, gates) = (Vec::new(), Vec::new());
+        Self { shape, regions, remesh: false, tolerance: None, size: None, growth: Self::GROWTH, gates }
     }
 }
 

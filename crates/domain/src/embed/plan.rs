@@ -66,7 +66,7 @@ impl EmbedPlan {
         self.validate()?;
         let TissueShape::Organ(surface) = &self.tissue.shape else { return Ok(()) };
         Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
-        contains_nodes(surface, network, true, name)?;
+        contains_nodes(surface, network, &[], true, name)?;
         check_edges(surface, network, name)
     }
 }

@@ -1,7 +1,7 @@
 //! Network file contents, reader options, and additional arrays.
 
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_mesh::units::counted;
+use anastomesh_mesh::units::{counted, place};
 use anastomesh_skeleton::{LineGroup, NodeId, Skeleton};
 use serde::Serialize;
 use std::fmt;
@@ -138,6 +138,17 @@ pub enum NetworkNote {
         /// Factor on radii.
         radii: f64,
     },
+    /// Vessels leave the surface around the tissue, and were cut there.
+    Cut {
+        /// Number of cuts.
+        vessels: usize,
+        /// Name of the node at the first cut.
+        node: String,
+        /// Its place.
+        at: [f64; 3],
+        /// Number of nodes that were removed.
+        removed: usize,
+    },
     /// Length units of the file and of the result.
     Unit {
         /// Unit in the file.
@@ -186,6 +197,13 @@ impl fmt::Display for NetworkNote {
             Self::Scaled { positions, radii } => {
                 write!(f, "positions multiplied by {positions}, radii by {radii}")
             }
+            Self::Cut { vessels, node, at, removed } => write!(
+                f,
+                "{} cut at the surface around the tissue, first at node {node}, {}; {} removed",
+                counted(*vessels, "vessel"),
+                place(*at),
+                counted(*removed, "node")
+            ),
             Self::Unit { from, to } if from == to => write!(f, "lengths in {from}"),
             Self::Unit { from, to } => write!(f, "lengths converted from {from} to {to}"),
             Self::EdgesFrom { file } => write!(f, "edges read from {file}"),

@@ -1,0 +1,299 @@
+//! Vessels that leave the organ: their network is cut at the organ's surface, or inside.
+
+use super::error::DomainError;
+use super::inside::{Closed, passes, tidy};
+use super::plan::{DomainPlan, Site, TissueShape};
+use anastomesh_mesh::geometry::predicates::orient3d;
+use anastomesh_mesh::geometry::{Aabb, Point3, point_triangle};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_tet::Tetrahedralizer;
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+use serde::Serialize;
+
+/// Least distance to the organ of ends inside, in outer radii.
+const CLEARANCE: f64 = 1.5;
+/// Distance beyond a terminal, in radii, within which its vessel leaves if it ends at the organ.
+const BEYOND: f64 = 1.5;
+/// Steps in which the place of an end inside is searched along an edge.
+const STEPS: usize = 64;
+
+/// Place where vessels end that leave the organ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub enum VesselEnds {
+    /// At its surface, which gets openings there.
+    #[default]
+    AtSurface,
+    /// Inside, at 1.5 outer radii from the surface.
+    Inside,
+}
+
+/// Network without the vessels outside an organ.
+///
+/// ```
+/// use anastomesh_domain::{CutNetwork, DomainPlan, TissuePlan, TissueShape, VesselEnds};
+/// use anastomesh_mesh::shapes::sphere_surface;
+/// use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
+///
+/// let node = |z: f64, original| Node { position: [0.0, 0.0, z].into(), radius: 0.1, original };
+/// let edges = vec![Edge { nodes: [NodeId(0), NodeId(1)], radii: [0.1; 2] }];
+/// let vessel = Skeleton { nodes: vec![node(0.0, 0), node(2.0, 1)], edges };
+/// let organ = TissuePlan::new(TissueShape::Organ(sphere_surface(3)));
+/// let plan = DomainPlan::default().tissue(organ);
+/// let cut = CutNetwork::of(&vessel, &plan, VesselEnds::AtSurface, &[1])?;
+/// assert!((cut.network.nodes[1].position.z - 1.0).abs() < 0.01);
+/// assert_eq!((cut.gates, cut.report.vessels), (vec![1], 1));
+/// # Ok::<(), anastomesh_domain::DomainError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CutNetwork {
+    /// Network.
+    pub network: Skeleton,
+    /// Nodes of the network as it was read at which vessels leave; for [`TissuePlan::gates`](super::TissuePlan).
+    pub gates: Vec<u32>,
+    /// What was removed.
+    pub report: CutReport,
+}
+
+/// Vessels that were cut at an organ.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct CutReport {
+    /// Number of cuts.
+    pub vessels: usize,
+    /// Node at the first cut, and its place.
+    pub first: Option<(u32, [f64; 3])>,
+    /// Number of nodes removed outside.
+    pub outside: usize,
+    /// Number of nodes removed inside, near the organ.
+    pub inside: usize,
+}
+
+/// Network while it is cut.
+struct Cutter<'a> {
+    network: &'a Skeleton,
+    plan: &'a DomainPlan,
+    organ: Closed<'a>,
+    adjacency: Adjacency,
+    is_inside: Vec<bool>,
+}
+
+/// New end of an edge.
+struct End {
+    edge: EdgeId,
+    /// Node of the edge that stays.
+    from: NodeId,
+    /// Fraction of the way to the other node.
+    t: f64,
+    /// First node outside.
+    outer: NodeId,
+}
+
+impl CutNetwork {
+    /// Cuts a network at the organ of a plan. `roots` are nodes of the network as it was read. A root outside gives its
+    /// number to the end of its vessel. Without an organ, nothing changes.
+    ///
+    /// # Errors
+    /// The organ's surface cannot be filled, or no vessel lies inside.
+    pub fn of(network: &Skeleton, plan: &DomainPlan, ends: VesselEnds, roots: &[u32]) -> Result<Self, DomainError> {
+        let unchanged = || Self { network: network.clone(), gates: Vec::new(), report: CutReport::default() };
+        let shape = plan.tissue.as_ref().map(|tissue| &tissue.shape);
+        let Some(TissueShape::Organ(surface)) = shape else { return Ok(unchanged()) };
+        // Preparation reports faults of networks.
+        if !is_readable(network) {
+            return Ok(unchanged());
+        }
+        Tetrahedralizer::new().check(surface).map_err(DomainError::Organ)?;
+        let surface = tidy(surface);
+        let organ = Closed::new(&surface);
+        let is_inside: Vec<bool> = network.nodes.par_iter().map(|node| organ.contains(&node.position)).collect();
+        let adjacency = network.adjacency();
+        let cutter = Cutter { network, plan, organ, adjacency, is_inside };
+        let at_organ: Vec<u32> = if ends == VesselEnds::AtSurface { cutter.ends_at_organ() } else { Vec::new() };
+        let mut cut = match cutter.is_inside.iter().all(|&inside| inside) {
+            true => unchanged(),
+            false => cutter.cut(ends, roots)?,
+        };
+        if ends == VesselEnds::Inside {
+            cut.gates.clear();
+        }
+        cut.gates.extend(at_organ);
+        cut.gates.sort_unstable();
+        cut.gates.dedup();
+        Ok(cut)
+    }
+}
+
+/// True if all positions are finite and all edges have their nodes.
+fn is_readable(network: &Skeleton) -> bool {
+    let finite = |node: &Node| node.position.iter().all(|x| x.is_finite());
+    let known = |edge: &Edge| edge.nodes.iter().all(|node| node.index() < network.nodes.len());
+    network.nodes.iter().all(finite) && network.edges.iter().all(known)
+}
+
+impl Cutter<'_> {
+    fn place(&self, node: NodeId) -> Point3 {
+        self.network.node(node).position
+    }
+
+    /// Radius of a vessel with all shells, at a fraction of its length from one of its nodes.
+    fn outer(&self, edge: EdgeId, from: NodeId, t: f64) -> f64 {
+        let edge = self.network.edge(edge);
+        let start = edge.end(from);
+        let radius = edge.radii[start] * (1.0 - t) + edge.radii[1 - start] * t;
+        let nodes = [from, edge.other(from)];
+        let site = Site { radius, ends: nodes.map(|node| self.network.node(node).original), t };
+        radius + self.plan.thickness(&site)
+    }
+
+    /// Fraction of a segment up to the organ.
+    fn meets_organ(&self, p: &Point3, q: &Point3) -> Option<f64> {
+        let near = self.organ.near(&Aabb::of_points([p, q])).into_iter().map(|t| self.organ.corners(t));
+        let met = near.filter(|&corners| passes([p, q], corners, true)).map(|[a, b, c]| {
+            let [from, to] = [p, q].map(|end| orient3d(a, b, c, end));
+            from / (from - to)
+        });
+        met.min_by(f64::total_cmp)
+    }
+
+    /// Terminals inside whose vessels lead straight to the organ, nearby.
+    fn ends_at_organ(&self) -> Vec<u32> {
+        let leaves = |&node: &NodeId| {
+            let &[edge] = self.adjacency.edges(node) else { return false };
+            let edge = self.network.edge(edge);
+            let [from, to] = [edge.other(node), node].map(|end| self.place(end));
+            let length = (to - from).norm();
+            let beyond = to + (to - from) * (BEYOND * edge.radii[edge.end(node)] / length);
+            self.is_inside[node.index()] && length > 0.0 && self.meets_organ(&to, &beyond).is_some()
+        };
+        let found = self.network.node_ids().filter(leaves);
+        found.map(|node| self.network.node(node).original).collect()
+    }
+
+    fn cut(&self, ends: VesselEnds, roots: &[u32]) -> Result<CutNetwork, DomainError> {
+        let mut kept = self.is_inside.clone();
+        let cuts = self.ends(ends, &mut kept);
+        let roots = self.roots_outside(roots);
+        let outside = self.is_inside.iter().filter(|&&inside| !inside).count();
+        let inside = kept.iter().filter(|&&kept| !kept).count() - outside;
+        let mut report = CutReport { outside, inside, ..CutReport::default() };
+        let (mut network, number) = self.rest(&kept, &cuts);
+        let mut gates = Vec::new();
+        let mut used: FxHashSet<u32> = FxHashSet::default();
+        for End { edge, from, t, outer } in cuts.into_iter().filter(|end| kept[end.from.index()]) {
+            let old = self.network.edge(edge);
+            let start = old.end(from);
+            let mix = |a: f64, b: f64| a + (b - a) * t;
+            let [p, q] = [from, old.other(from)].map(|node| self.network.node(node));
+            let root = roots[outer.index()].filter(|root| !used.contains(root));
+            let original = root.unwrap_or(self.network.node(outer).original);
+            let position = p.position + (q.position - p.position) * t;
+            let at = position.coords.into();
+            if !used.insert(original) {
+                return Err(DomainError::LeavesTwice { node: original, at });
+            }
+            let end = NodeId(network.nodes.len() as u32);
+            network.nodes.push(Node { position, radius: mix(p.radius, q.radius), original });
+            let radii = [old.radii[start], mix(old.radii[start], old.radii[1 - start])];
+            network.edges.push(Edge { nodes: [number[from.index()], end], radii });
+            report.first.get_or_insert((original, at));
+            gates.push(original);
+        }
+        report.vessels = gates.len();
+        if network.edges.is_empty() {
+            return Err(DomainError::NoVesselInside);
+        }
+        Ok(CutNetwork { network, gates, report })
+    }
+
+    /// New ends of the edges from inside to outside. Nodes that are removed inside are no longer kept.
+    fn ends(&self, ends: VesselEnds, kept: &mut [bool]) -> Vec<End> {
+        let mut cuts = Vec::new();
+        for edge in self.network.edge_ids() {
+            let [a, b] = self.network.edge(edge).nodes;
+            let [from, outer] = match [a, b].map(|node| self.is_inside[node.index()]) {
+                [true, false] => [a, b],
+                [false, true] => [b, a],
+                _ => continue,
+            };
+            let (edge, from, t) = match ends {
+                VesselEnds::AtSurface => (edge, from, self.at_surface(edge, from)),
+                VesselEnds::Inside => self.inside(edge, from, kept),
+            };
+            cuts.push(End { edge, from, t, outer });
+        }
+        cuts
+    }
+
+    /// Root of the connected part outside, for each node outside.
+    fn roots_outside(&self, roots: &[u32]) -> Vec<Option<u32>> {
+        let mut root_of = vec![None; self.network.nodes.len()];
+        let is_root = |node: &NodeId| roots.contains(&self.network.node(*node).original);
+        for first in self.network.node_ids().filter(is_root) {
+            let root = self.network.node(first).original;
+            let mut queue = vec![first];
+            while let Some(node) = queue.pop() {
+                if self.is_inside[node.index()] || root_of[node.index()].replace(root).is_some() {
+                    continue;
+                }
+                let beside = self.adjacency.edges(node).iter();
+                queue.extend(beside.map(|&edge| self.network.edge(edge).other(node)));
+            }
+        }
+        root_of
+    }
+
+    /// Nodes that are kept and the edges between them, without those that get a new end; and the new number of each node.
+    fn rest(&self, kept: &[bool], cuts: &[End]) -> (Skeleton, Vec<NodeId>) {
+        let mut network = Skeleton::default();
+        let mut number = vec![NodeId(u32::MAX); kept.len()];
+        for node in self.network.node_ids().filter(|node| kept[node.index()]) {
+            number[node.index()] = NodeId(network.nodes.len() as u32);
+            network.nodes.push(*self.network.node(node));
+        }
+        let ended: FxHashSet<EdgeId> = cuts.iter().map(|end| end.edge).collect();
+        for edge in self.network.edge_ids().filter(|edge| !ended.contains(edge)) {
+            let old = self.network.edge(edge);
+            if old.nodes.iter().all(|node| kept[node.index()]) {
+                network.edges.push(Edge { nodes: old.nodes.map(|node| number[node.index()]), ..*old });
+            }
+        }
+        (network, number)
+    }
+
+    /// Fraction of an edge up to the organ, but not within the lumen of its inner node.
+    fn at_surface(&self, edge: EdgeId, from: NodeId) -> f64 {
+        let old = self.network.edge(edge);
+        let [p, q] = [from, old.other(from)].map(|node| self.place(node));
+        let least = (old.radii[old.end(from)] / (q - p).norm()).min(1.0);
+        self.meets_organ(&p, &q).unwrap_or(1.0).max(least)
+    }
+
+    /// Edge with the end of a vessel inside, this one or one before it, and the fraction up to there. Nodes after it are not kept.
+    fn inside(&self, mut edge: EdgeId, mut from: NodeId, kept: &mut [bool]) -> (EdgeId, NodeId, f64) {
+        loop {
+            let old = self.network.edge(edge);
+            let [p, q] = [from, old.other(from)].map(|node| self.place(node));
+            let fits = |&t: &f64| self.is_clear(&(p + (q - p) * t), CLEARANCE * self.outer(edge, from, t));
+            let steps = (0..STEPS).rev().map(|i| i as f64 / STEPS as f64);
+            let least = (old.radii[old.end(from)] / (q - p).norm()).min(1.0);
+            match (steps.take_while(|&t| t > 0.0).find(fits), self.adjacency.edges(from)) {
+                (None, &[first, second]) if kept[from.index()] => {
+                    kept[from.index()] = false;
+                    edge = if first == edge { second } else { first };
+                    from = self.network.edge(edge).other(from);
+                }
+                (found, _) => return (edge, from, found.unwrap_or(0.0).max(least)),
+            }
+        }
+    }
+
+    /// True if a point is inside the organ, at least this far from its surface.
+    fn is_clear(&self, p: &Point3, distance: f64) -> bool {
+        let place = Aabb { min: *p, max: *p }.grown(distance);
+        let is_far = |t| point_triangle(p, self.organ.corners(t)).1 >= distance;
+        self.organ.contains(p) && self.organ.near(&place).into_iter().all(is_far)
+    }
+}
