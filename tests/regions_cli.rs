@@ -109,6 +109,29 @@ fn regions_lie_in_each_other_and_around_vessels() {
 }
 
 #[test]
+fn vessels_leave_the_organ_through_openings_or_end_inside() {
+    let folder = folder();
+    let network = fork(&folder);
+    let out = folder.path().join("organ.vtu");
+    // Balls of radius 7 and 10 around (0, 0, 8): all three ends lie outside of the first, the last two near the second.
+    for (radius, ends, note) in [
+        (7.0, "surface", "3 vessels cut, 3 nodes removed, 3 openings, first at node 1, "),
+        (7.0, "inside", "3 vessels cut, 3 nodes removed, 0 openings, first at node 1, "),
+        (10.3, "surface", "0 vessels cut, 0 nodes removed, 2 openings, first at node 3, 6,0,16"),
+    ] {
+        let organ = ball(&folder, "organ.stl", 0.0, radius);
+        let options = ["--wall", "0.2r", "--tissue", &organ, "--tissue-growth", "2", "--tissue-ends", ends];
+        let done = mesh(&network, &out, &options);
+        assert_code(&done, 0);
+        assert!(stderr(&done).contains(note), "{}", stderr(&done));
+        let checked = check(&out);
+        assert_code(&checked, 0);
+        let caps_outside = stdout(&checked).matches("interface").count();
+        assert!(stdout(&checked).ends_with("valid\n"), "{caps_outside}\n{}", stdout(&checked));
+    }
+}
+
+#[test]
 fn surfaces_are_remeshed_on_request() {
     let folder = folder();
     let network = fork(&folder);
@@ -141,8 +164,9 @@ fn regions_that_cannot_be_made_are_refused() {
     let [apart, across, beside, far] =
         [region("apart", 9.0, 2.0), region("across", 0.0, 6.0), region("beside", 7.0, 2.0), region("far", 50.0, 2.0)];
     let (cut, torn) = (ball(&folder, "cut.stl", 0.0, 10.3), format!("torn={}", open.to_str().expect("text")));
+    let (beyond, oblique) = (ball(&folder, "beyond.stl", 90.0, 9.0), ball(&folder, "oblique.stl", 9.4, 10.0));
     let crossing = "pass through the surface of across, first between nodes 1 and 2 at";
-    let cases: [(&[&str], i32, &str); 20] = [
+    let cases: [(&[&str], i32, &str); 22] = [
         (&["--tissue", "hull:-1"], 2, "invalid margin"),
         (&["--tissue", "hull:0.001"], 3, "the margin 0.001 of the hull is too small"),
         (&["--tissue", "box:0.1", "--wall", "0.5r"], 3, "give a wider margin"),
@@ -158,14 +182,20 @@ fn regions_that_cannot_be_made_are_refused() {
         (&["--tissue", &organ, "--tissue-region", &torn], 3, "the surface of torn cannot be filled"),
         (&["--tissue", &organ, "--tissue-region", "wall"], 2, "give NAME=SURFACE"),
         (&["--tissue", &organ, "--tissue-region", "lumen=organ.stl"], 3, "organ.stl"),
-        (&["--tissue", &cut], 3, "pass through the surface of tissue, first between nodes"),
+        (&["--tissue", &cut, "--tissue-ends", "refuse"], 3, "pass through the surface of tissue, first between nodes"),
+        (&["--tissue", &beyond], 3, "no vessel lies inside"),
+        (&["--tissue", &oblique], 3, "cannot be opened for the vessel at"),
         (&["--wall", "thick"], 3, "thick"),
         (&["--wall", "0.2q"], 2, "unknown unit"),
         (&["--wall", "5um"], 2, "--units"),
         (&["--wall", "-0.1r"], 2, "invalid thickness of wall"),
         (&["--wall", "0.1r", "--without", "walls"], 2, "no region is called 'walls'"),
         (&["--split-regions"], 2, "needs several regions"),
-        (&["--tissue", small.to_str().expect("text")], 3, "outside the surface around the tissue"),
+        (
+            &["--tissue", small.to_str().expect("text"), "--tissue-ends", "refuse"],
+            3,
+            "outside the surface around the tissue",
+        ),
         (&["--tissue", open.to_str().expect("text")], 3, "cannot be filled"),
     ];
     for (options, code, needle) in cases {

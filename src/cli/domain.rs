@@ -9,7 +9,8 @@ use super::network::NetworkArgs;
 use super::numbers::{above_zero, number};
 use super::units::Units;
 use anastomesh_domain::{
-    CutNetwork, DomainError, DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape, VesselEnds,
+    CutNetwork, DomainError, DomainPlan, EmbedPlan, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape,
+    VesselEnds,
 };
 use anastomesh_io::network::{NetworkFile, NetworkFormat, NetworkNote};
 use anastomesh_io::surface::read_surface;
@@ -88,7 +89,7 @@ pub struct DomainArgs {
     /// Remesh the surfaces of tissue and regions to `--tissue-size`, or with even triangles of their own size
     #[arg(long, requires = "tissue")]
     tissue_remesh: bool,
-    /// Where vessels end that leave the surface of a file around the tissue
+    /// End of vessels that leave the surface of a file around the tissue
     #[arg(long, value_enum, default_value_t = EndsArg::Surface, requires = "tissue")]
     tissue_ends: EndsArg,
     /// Maximum distance between a surface and the remeshed one (default: 0.001 of the diagonal)
@@ -319,7 +320,7 @@ impl DomainArgs {
         if let Some((node, at)) = report.first {
             let (vessels, removed) = (report.vessels, report.outside + report.inside);
             let node = file.names.of(NodeId(node));
-            file.notes.push(NetworkNote::Cut { vessels, node, at, removed });
+            file.notes.push(NetworkNote::Cut { vessels, openings: gates.len(), node, at, removed });
         }
         file.skeleton = network;
         if let Some(tissue) = &mut plan.tissue {

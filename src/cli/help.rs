@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 67] = [
+const RARE: [&str; 68] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -66,6 +66,7 @@ const RARE: [&str; 67] = [
     "stretch",
     "tissue-growth",
     "tissue-region",
+    "tissue-ends",
     "tissue-remesh",
     "tissue-size",
     "tissue-tolerance",

@@ -16,14 +16,17 @@ struct Bisected<'a> {
 
 /// Bisects edges until no triangle is too long. New points are midpoints of edges.
 pub fn bisect(surface: &mut TriMesh, is_long: &dyn Fn([&Point3; 3]) -> bool) {
-    let corners = |surface: &TriMesh, t: u32| is_long(surface.triangles[t as usize].map(|v| &surface.points[v as usize]));
+    let corners =
+        |surface: &TriMesh, t: u32| is_long(surface.triangles[t as usize].map(|v| &surface.points[v as usize]));
     let mut long: Vec<u32> = (0..surface.triangles.len() as u32).filter(|&t| corners(surface, t)).collect();
     if long.is_empty() {
         return;
     }
     let mut at: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
     for (t, triangle) in (0..).zip(&surface.triangles) {
-        edges(*triangle).into_iter().for_each(|edge| at.entry(edge).or_default().push(t));
+        for edge in edges(*triangle) {
+            at.entry(edge).or_default().push(t);
+        }
     }
     let mut bisected = Bisected { surface, at };
     for _ in 0..MAX_BISECTIONS {

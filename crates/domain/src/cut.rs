@@ -53,7 +53,7 @@ pub struct CutNetwork {
     pub network: Skeleton,
     /// Nodes of the network as it was read at which vessels leave; for [`TissuePlan::gates`](super::TissuePlan).
     pub gates: Vec<u32>,
-    /// What was removed.
+    /// Summary of the cuts.
     pub report: CutReport,
 }
 
@@ -63,7 +63,7 @@ pub struct CutNetwork {
 pub struct CutReport {
     /// Number of cuts.
     pub vessels: usize,
-    /// Node at the first cut, and its place.
+    /// Node at the first cut or gate, and its place.
     pub first: Option<(u32, [f64; 3])>,
     /// Number of nodes removed outside.
     pub outside: usize,
@@ -111,17 +111,18 @@ impl CutNetwork {
         let is_inside: Vec<bool> = network.nodes.par_iter().map(|node| organ.contains(&node.position)).collect();
         let adjacency = network.adjacency();
         let cutter = Cutter { network, plan, organ, adjacency, is_inside };
-        let at_organ: Vec<u32> = if ends == VesselEnds::AtSurface { cutter.ends_at_organ() } else { Vec::new() };
-        let mut cut = match cutter.is_inside.iter().all(|&inside| inside) {
-            true => unchanged(),
-            false => cutter.cut(ends, roots)?,
-        };
-        if ends == VesselEnds::Inside {
-            cut.gates.clear();
+        let at_organ = cutter.ends_at_organ();
+        let is_cut = cutter.is_inside.contains(&false) || ends == VesselEnds::Inside && !at_organ.is_empty();
+        let mut cut = if is_cut { cutter.cut(ends, roots, &at_organ)? } else { unchanged() };
+        if ends == VesselEnds::AtSurface {
+            let node = |node: NodeId| network.node(node);
+            if let Some(&first) = at_organ.first() {
+                cut.report.first.get_or_insert((node(first).original, node(first).position.coords.into()));
+            }
+            cut.gates.extend(at_organ.into_iter().map(|end| node(end).original));
+            cut.gates.sort_unstable();
+            cut.gates.dedup();
         }
-        cut.gates.extend(at_organ);
-        cut.gates.sort_unstable();
-        cut.gates.dedup();
         Ok(cut)
     }
 }
@@ -159,7 +160,7 @@ impl Cutter<'_> {
     }
 
     /// Terminals inside whose vessels lead straight to the organ, nearby.
-    fn ends_at_organ(&self) -> Vec<u32> {
+    fn ends_at_organ(&self) -> Vec<NodeId> {
         let leaves = |&node: &NodeId| {
             let &[edge] = self.adjacency.edges(node) else { return false };
             let edge = self.network.edge(edge);
@@ -168,13 +169,15 @@ impl Cutter<'_> {
             let beyond = to + (to - from) * (BEYOND * edge.radii[edge.end(node)] / length);
             self.is_inside[node.index()] && length > 0.0 && self.meets_organ(&to, &beyond).is_some()
         };
-        let found = self.network.node_ids().filter(leaves);
-        found.map(|node| self.network.node(node).original).collect()
+        self.network.node_ids().filter(leaves).collect()
     }
 
-    fn cut(&self, ends: VesselEnds, roots: &[u32]) -> Result<CutNetwork, DomainError> {
+    fn cut(&self, ends: VesselEnds, roots: &[u32], at_organ: &[NodeId]) -> Result<CutNetwork, DomainError> {
         let mut kept = self.is_inside.clone();
-        let cuts = self.ends(ends, &mut kept);
+        let mut cuts = self.ends(ends, &mut kept);
+        if ends == VesselEnds::Inside {
+            cuts.extend(at_organ.iter().map(|&end| self.retracted(end, &mut kept)));
+        }
         let roots = self.roots_outside(roots);
         let outside = self.is_inside.iter().filter(|&&inside| !inside).count();
         let inside = kept.iter().filter(|&&kept| !kept).count() - outside;
@@ -199,9 +202,11 @@ impl Cutter<'_> {
             let radii = [old.radii[start], mix(old.radii[start], old.radii[1 - start])];
             network.edges.push(Edge { nodes: [number[from.index()], end], radii });
             report.first.get_or_insert((original, at));
-            gates.push(original);
+            report.vessels += 1;
+            if ends == VesselEnds::AtSurface {
+                gates.push(original);
+            }
         }
-        report.vessels = gates.len();
         if network.edges.is_empty() {
             return Err(DomainError::NoVesselInside);
         }
@@ -225,6 +230,14 @@ impl Cutter<'_> {
             cuts.push(End { edge, from, t, outer });
         }
         cuts
+    }
+
+    /// End inside of a vessel that ends at the organ.
+    fn retracted(&self, end: NodeId, kept: &mut [bool]) -> End {
+        let edge = self.adjacency.edges(end)[0];
+        kept[end.index()] = false;
+        let (edge, from, t) = self.inside(edge, self.network.edge(edge).other(end), kept);
+        End { edge, from, t, outer: end }
     }
 
     /// Root of the connected part outside, for each node outside.
@@ -263,12 +276,13 @@ impl Cutter<'_> {
         (network, number)
     }
 
-    /// Fraction of an edge up to the organ, but not within the lumen of its inner node.
+    /// Fraction of an edge up to the organ, but not within the lumen of a fork.
     fn at_surface(&self, edge: EdgeId, from: NodeId) -> f64 {
         let old = self.network.edge(edge);
         let [p, q] = [from, old.other(from)].map(|node| self.place(node));
-        let least = (old.radii[old.end(from)] / (q - p).norm()).min(1.0);
-        self.meets_organ(&p, &q).unwrap_or(1.0).max(least)
+        let at = self.meets_organ(&p, &q).unwrap_or(1.0);
+        let is_branching = self.adjacency.valence(from) > 2;
+        if is_branching { at.max((old.radii[old.end(from)] / (q - p).norm()).min(1.0)) } else { at }
     }
 
     /// Edge with the end of a vessel inside, this one or one before it, and the fraction up to there. Nodes after it are not kept.
@@ -279,13 +293,13 @@ impl Cutter<'_> {
             let fits = |&t: &f64| self.is_clear(&(p + (q - p) * t), CLEARANCE * self.outer(edge, from, t));
             let steps = (0..STEPS).rev().map(|i| i as f64 / STEPS as f64);
             let least = (old.radii[old.end(from)] / (q - p).norm()).min(1.0);
-            match (steps.take_while(|&t| t > 0.0).find(fits), self.adjacency.edges(from)) {
+            match (steps.take_while(|&t| t > least).find(fits), self.adjacency.edges(from)) {
                 (None, &[first, second]) if kept[from.index()] => {
                     kept[from.index()] = false;
                     edge = if first == edge { second } else { first };
                     from = self.network.edge(edge).other(from);
                 }
-                (found, _) => return (edge, from, found.unwrap_or(0.0).max(least)),
+                (found, _) => return (edge, from, found.unwrap_or(least)),
             }
         }
     }
@@ -295,5 +309,84 @@ impl Cutter<'_> {
         let place = Aabb { min: *p, max: *p }.grown(distance);
         let is_far = |t| point_triangle(p, self.organ.corners(t)).1 >= distance;
         self.organ.contains(p) && self.organ.near(&place).into_iter().all(is_far)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::TissuePlan;
+    use super::*;
+    use anastomesh_mesh::TriMesh;
+    use anastomesh_mesh::shapes::sphere_surface;
+    use anastomesh_skeleton::fixtures::network;
+
+    /// Ball of radius 10 around the origin.
+    fn plan() -> DomainPlan {
+        let ball = sphere_surface(4);
+        let points = ball.points.iter().map(|p| p * 10.0).collect();
+        let shape = TissueShape::Organ(TriMesh { points, ..ball });
+        DomainPlan::default().tissue(TissuePlan::new(shape))
+    }
+
+    fn cut(
+        points: &[[f64; 3]],
+        edges: &[(u32, u32)],
+        ends: VesselEnds,
+        roots: &[u32],
+    ) -> Result<CutNetwork, DomainError> {
+        CutNetwork::of(&network(points, 1.0, edges), &plan(), ends, roots)
+    }
+
+    /// Trunk of four nodes, of which two lie outside, and two branches inside.
+    const TRUNK: ([[f64; 3]; 6], [(u32, u32); 5]) = (
+        [[0.0, 0.0, 20.0], [0.0, 0.0, 12.0], [0.0, 0.0, 8.0], [0.0; 3], [4.0, 0.0, -4.0], [-4.0, 0.0, -4.0]],
+        [(0, 1), (1, 2), (2, 3), (3, 4), (3, 5)],
+    );
+
+    #[test]
+    fn the_root_gives_its_number_to_the_end_at_the_surface() {
+        let (points, edges) = TRUNK;
+        for (roots, original) in [(&[0][..], 0), (&[], 1)] {
+            let cut = cut(&points, &edges, VesselEnds::AtSurface, roots).expect("cut");
+            assert_eq!((cut.gates.as_slice(), cut.report.outside, cut.report.vessels), (&[original][..], 2, 1));
+            let end = cut.network.nodes.last().expect("an end");
+            assert!(end.original == original && (end.position.z - 10.0).abs() < 0.05, "{end:?}");
+            assert_eq!((cut.network.nodes.len(), cut.network.edges.len()), (5, 4));
+        }
+    }
+
+    #[test]
+    fn ends_inside_keep_their_distance() {
+        let (points, edges) = TRUNK;
+        let far = cut(&points, &edges, VesselEnds::Inside, &[0]).expect("cut");
+        assert_eq!((far.gates.len(), far.report.inside), (0, 1));
+        let end = far.network.nodes.last().expect("an end");
+        assert!(end.original == 0 && end.position.z < 8.5 && end.position.z > 7.5, "{end:?}");
+        // The node inside is nearer than that.
+        let mut near = points;
+        near[2][2] = 9.0;
+        let shorter = cut(&near, &edges, VesselEnds::Inside, &[0]).expect("cut");
+        let end = shorter.network.nodes.last().expect("an end");
+        assert!(shorter.report.inside == 1 && end.position.z < 8.5, "{end:?}");
+    }
+
+    #[test]
+    fn terminals_at_the_surface_are_gates_or_retracted() {
+        let (points, edges) = ([[0.0; 3], [0.0, 0.0, 9.5]], [(0, 1)]);
+        let open = cut(&points, &edges, VesselEnds::AtSurface, &[]).expect("unchanged");
+        assert_eq!((open.gates.as_slice(), open.report.vessels), (&[1][..], 0));
+        assert_eq!(open.network, network(&points, 1.0, &edges));
+        let inside = cut(&points, &edges, VesselEnds::Inside, &[]).expect("retracted");
+        let end = inside.network.nodes.last().expect("an end");
+        assert!(inside.gates.is_empty() && end.original == 1 && end.position.z < 8.5, "{end:?}");
+    }
+
+    #[test]
+    fn networks_outside_and_vessels_that_return_are_refused() {
+        let outside = cut(&[[0.0, 0.0, 11.0], [0.0, 0.0, 20.0]], &[(0, 1)], VesselEnds::AtSurface, &[]);
+        assert!(matches!(outside, Err(DomainError::NoVesselInside)), "{outside:?}");
+        let points = [[-5.0, 0.0, 0.0], [0.0, 0.0, 20.0], [5.0, 0.0, 0.0]];
+        let returns = cut(&points, &[(0, 1), (1, 2)], VesselEnds::AtSurface, &[]);
+        assert!(matches!(returns, Err(DomainError::LeavesTwice { node: 1, .. })), "{returns:?}");
     }
 }

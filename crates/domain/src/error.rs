@@ -151,7 +151,9 @@ pub enum DomainError {
         at: [f64; 3],
     },
     /// All vessels lie outside the organ.
-    #[error("no vessel lies inside the surface around the tissue: give the surface in the unit of the network, and at its place")]
+    #[error(
+        "no vessel lies inside the surface around the tissue: give the surface in the unit of the network, and at its place"
+    )]
     NoVesselInside,
     /// A node outside the organ joins two vessels that lead inside.
     #[error("vessels leave the surface around the tissue and return at node {node} at {}: remove the node, or give a surface around it", place(*at))]

@@ -132,7 +132,9 @@ pub fn open(organ: &TriMesh, gates: Vec<Gate>) -> Result<(TriMesh, Vec<Opening>)
     let mut openings = Vec::new();
     for gate in gates {
         let own = part_to_remove(&surface, &removed, &gate)?;
-        own.iter().for_each(|&t| removed[t as usize] = true);
+        for &t in &own {
+            removed[t as usize] = true;
+        }
         let rims = loops(own.iter().map(|&t| surface.triangles[t as usize]));
         let Some(Ok([rim])) = rims.map(<[Vec<u32>; 1]>::try_from) else {
             return Err(gate.fault(GateFault::Rim));
@@ -149,7 +151,7 @@ pub fn open(organ: &TriMesh, gates: Vec<Gate>) -> Result<(TriMesh, Vec<Opening>)
             return Err(gate.fault(GateFault::Close));
         }
     }
-    Ok(compact(surface, openings))
+    Ok(compact(&surface, openings))
 }
 
 /// Triangles to remove for a gate: those at its end that are connected, and form a disc.
@@ -163,7 +165,9 @@ fn part_to_remove(surface: &TriMesh, removed: &[bool], gate: &Gate) -> Result<Ve
     };
     let mut at: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
     for &t in &reached {
-        edges(surface.triangles[t as usize]).into_iter().for_each(|edge| at.entry(edge).or_default().push(t));
+        for edge in edges(surface.triangles[t as usize]) {
+            at.entry(edge).or_default().push(t);
+        }
     }
     let mut own: FxHashSet<u32> = [first].into_iter().collect();
     let mut queue = vec![first];
@@ -230,7 +234,7 @@ fn pairs(ring: &[u32]) -> impl Iterator<Item = [u32; 2]> {
 }
 
 /// The surface without unused points.
-fn compact(surface: TriMesh, mut openings: Vec<Opening>) -> (TriMesh, Vec<Opening>) {
+fn compact(surface: &TriMesh, mut openings: Vec<Opening>) -> (TriMesh, Vec<Opening>) {
     let used = vertices_of(&surface.triangles, surface.points.len());
     let (mut number, mut points) = (vec![u32::MAX; used.len()], Vec::new());
     for v in (0..used.len()).filter(|&v| used[v]) {

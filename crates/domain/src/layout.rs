@@ -64,13 +64,9 @@ impl<'a> Layout<'a> {
     /// Outer surface of the vessels, with some of their ends.
     fn vessels(&self, has_end: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
         let Self { lumen, shells, .. } = *self;
-        let mut triangles: Vec<[u32; 3]> = match shells.sides.last() {
-            Some(outer) => outer.clone(),
-            None => {
-                let wall = lumen.surface.triangles.iter().zip(&lumen.caps).filter(|(_, cap)| cap.is_none());
-                wall.map(|(t, _)| *t).collect()
-            }
-        };
+        let wall = || lumen.surface.triangles.iter().zip(&lumen.caps).filter(|(_, cap)| cap.is_none());
+        let bare = || wall().map(|(t, _)| *t).collect();
+        let mut triangles: Vec<[u32; 3]> = shells.sides.last().cloned().unwrap_or_else(bare);
         triangles.extend(self.ends(has_end));
         triangles
     }
@@ -116,7 +112,9 @@ impl<'a> Layout<'a> {
         let mut triangles: Vec<[u32; 3]> = vessels.iter().filter(|t| self.home(t[0]) == region).copied().collect();
         if region == 0 && !around.openings.is_empty() {
             // The organ's surface, which faces out of the tissue, continues in them.
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+            for t in &mut triangles {
+                t.swap(1, 2);
+            }
         }
         let mut of_surfaces = Vec::new();
         let inner = (1..around.surfaces.len()).filter(|&i| around.parents[i] == region && i != region);

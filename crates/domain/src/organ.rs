@@ -196,11 +196,7 @@ fn first_corner(surface: &TriMesh, t: [u32; 3]) -> [f64; 3] {
 
 /// Checks that vessels lie inside a closed surface, except at its openings, and do not touch it. `opened` is the surface
 /// with the openings.
-fn holds(
-    organ: &TriMesh,
-    vessels: &TriMesh,
-    (opened, openings): (&TriMesh, &[Opening]),
-) -> Result<(), DomainError> {
+fn holds(organ: &TriMesh, vessels: &TriMesh, (opened, openings): (&TriMesh, &[Opening])) -> Result<(), DomainError> {
     let meeting = meeting(vessels, opened);
     if let Some(&t) = meeting.first() {
         let at = first_corner(vessels, vessels.triangles[t as usize]);

@@ -35,6 +35,9 @@ class DomainOptions(TypedDict, total=False):
         float | str, Option("Edge length at embedded vessels: a length (0.05, '5um'), a multiple of the radius ('2r'), a sum, or an array of the network", "2r")
     ]
     tissue_remesh: Annotated[bool, Option("Remesh the surfaces of tissue and regions to the size of the tissue")]
+    tissue_ends: Annotated[
+        str, Option("Where vessels end that leave the surface around the tissue: 'surface' (it is opened there), 'inside', or 'refuse' such networks", "surface")
+    ]
     tissue_tolerance: Annotated[float | None, Option("Maximum distance between a surface and the remeshed one")]
     tissue_regions: Annotated[
         Sequence[str] | None, Option("Regions of the tissue, each as 'NAME=SURFACE' with a closed surface", flag="tissue-region")

@@ -138,11 +138,13 @@ pub enum NetworkNote {
         /// Factor on radii.
         radii: f64,
     },
-    /// Vessels leave the surface around the tissue, and were cut there.
+    /// Vessels leave the surface around the tissue. They were cut, or it is opened for them.
     Cut {
         /// Number of cuts.
         vessels: usize,
-        /// Name of the node at the first cut.
+        /// Number of openings.
+        openings: usize,
+        /// Name of the node at the first of both.
         node: String,
         /// Its place.
         at: [f64; 3],
@@ -197,13 +199,14 @@ impl fmt::Display for NetworkNote {
             Self::Scaled { positions, radii } => {
                 write!(f, "positions multiplied by {positions}, radii by {radii}")
             }
-            Self::Cut { vessels, node, at, removed } => write!(
-                f,
-                "{} cut at the surface around the tissue, first at node {node}, {}; {} removed",
-                counted(*vessels, "vessel"),
-                place(*at),
-                counted(*removed, "node")
-            ),
+            Self::Cut { vessels, openings, node, at, removed } => {
+                let (cut, opened) = (counted(*vessels, "vessel"), counted(*openings, "opening"));
+                let (at, removed) = (place(*at), counted(*removed, "node"));
+                write!(
+                    f,
+                    "surface around the tissue: {cut} cut, {removed} removed, {opened}, first at node {node}, {at}"
+                )
+            }
             Self::Unit { from, to } if from == to => write!(f, "lengths in {from}"),
             Self::Unit { from, to } => write!(f, "lengths converted from {from} to {to}"),
             Self::EdgesFrom { file } => write!(f, "edges read from {file}"),
