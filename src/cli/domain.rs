@@ -316,7 +316,15 @@ impl DomainArgs {
         let ends = if ends == EndsArg::Inside { VesselEnds::Inside } else { VesselEnds::AtSurface };
         let asked = roots.iter().filter_map(|name| file.names.find(name, file.skeleton.nodes.len()));
         let roots: Vec<u32> = file.roots.iter().copied().chain(asked).map(|node| node.0).collect();
-        let CutNetwork { network, gates, report, .. } = CutNetwork::of(&file.skeleton, plan, ends, &roots)?;
+        let CutNetwork { network, gates, copies, report, .. } = CutNetwork::of(&file.skeleton, plan, ends, &roots)?;
+        for copy in copies {
+            file.names.add_copy(NodeId(copy));
+            let arrays = plan.shells.iter_mut().filter_map(|shell| match &mut shell.thickness {
+                Thickness::PerNode(values) => Some(values),
+                _ => None,
+            });
+            arrays.for_each(|values| values.extend(values.get(copy as usize).copied()));
+        }
         if let Some((node, at)) = report.first {
             let (vessels, removed) = (report.vessels, report.outside + report.inside);
             let node = file.names.of(NodeId(node));

@@ -53,6 +53,8 @@ pub struct CutNetwork {
     pub network: Skeleton,
     /// Nodes of the network as it was read at which vessels leave; for [`TissuePlan::gates`](super::TissuePlan).
     pub gates: Vec<u32>,
+    /// Nodes outside with several ends. Each further end has a number after those of all nodes that were read, in this order.
+    pub copies: Vec<u32>,
     /// Summary of the cuts.
     pub report: CutReport,
 }
@@ -98,7 +100,8 @@ impl CutNetwork {
     /// # Errors
     /// The organ's surface cannot be filled, or no vessel lies inside.
     pub fn of(network: &Skeleton, plan: &DomainPlan, ends: VesselEnds, roots: &[u32]) -> Result<Self, DomainError> {
-        let unchanged = || Self { network: network.clone(), gates: Vec::new(), report: CutReport::default() };
+        let (gates, copies, report) = (Vec::new(), Vec::new(), CutReport::default());
+        let unchanged = || Self { network: network.clone(), gates, copies, report };
         let shape = plan.tissue.as_ref().map(|tissue| &tissue.shape);
         let Some(TissueShape::Organ(surface)) = shape else { return Ok(unchanged()) };
         // Preparation reports faults of networks.
@@ -183,7 +186,8 @@ impl Cutter<'_> {
         let inside = kept.iter().filter(|&&kept| !kept).count() - outside;
         let mut report = CutReport { outside, inside, ..CutReport::default() };
         let (mut network, number) = self.rest(&kept, &cuts);
-        let mut gates = Vec::new();
+        let (mut gates, mut copies) = (Vec::new(), Vec::new());
+        let known = self.network.nodes.iter().map(|node| node.original + 1).max().unwrap_or(0);
         let mut used: FxHashSet<u32> = FxHashSet::default();
         for End { edge, from, t, outer } in cuts.into_iter().filter(|end| kept[end.from.index()]) {
             let old = self.network.edge(edge);
@@ -191,12 +195,13 @@ impl Cutter<'_> {
             let mix = |a: f64, b: f64| a + (b - a) * t;
             let [p, q] = [from, old.other(from)].map(|node| self.network.node(node));
             let root = roots[outer.index()].filter(|root| !used.contains(root));
-            let original = root.unwrap_or(self.network.node(outer).original);
+            let own = root.unwrap_or(self.network.node(outer).original);
+            let original = if used.insert(own) { own } else { known + copies.len() as u32 };
+            if original != own {
+                copies.push(own);
+            }
             let position = p.position + (q.position - p.position) * t;
             let at = position.coords.into();
-            if !used.insert(original) {
-                return Err(DomainError::LeavesTwice { node: original, at });
-            }
             let end = NodeId(network.nodes.len() as u32);
             network.nodes.push(Node { position, radius: mix(p.radius, q.radius), original });
             let radii = [old.radii[start], mix(old.radii[start], old.radii[1 - start])];
@@ -210,7 +215,7 @@ impl Cutter<'_> {
         if network.edges.is_empty() {
             return Err(DomainError::NoVesselInside);
         }
-        Ok(CutNetwork { network, gates, report })
+        Ok(CutNetwork { network, gates, copies, report })
     }
 
     /// New ends of the edges from inside to outside. Nodes that are removed inside are no longer kept.
@@ -382,11 +387,18 @@ mod tests {
     }
 
     #[test]
-    fn networks_outside_and_vessels_that_return_are_refused() {
+    fn networks_outside_are_refused() {
         let outside = cut(&[[0.0, 0.0, 11.0], [0.0, 0.0, 20.0]], &[(0, 1)], VesselEnds::AtSurface, &[]);
         assert!(matches!(outside, Err(DomainError::NoVesselInside)), "{outside:?}");
+    }
+
+    #[test]
+    fn a_node_outside_may_have_several_ends() {
         let points = [[-5.0, 0.0, 0.0], [0.0, 0.0, 20.0], [5.0, 0.0, 0.0]];
-        let returns = cut(&points, &[(0, 1), (1, 2)], VesselEnds::AtSurface, &[]);
-        assert!(matches!(returns, Err(DomainError::LeavesTwice { node: 1, .. })), "{returns:?}");
+        let cut = cut(&points, &[(0, 1), (1, 2)], VesselEnds::AtSurface, &[1]).expect("cut");
+        let originals: Vec<u32> = cut.network.nodes.iter().map(|node| node.original).collect();
+        assert_eq!((originals.as_slice(), cut.gates.as_slice(), cut.copies.as_slice()), {
+            (&[0, 2, 1, 3][..], &[1, 3][..], &[1][..])
+        });
     }
 }

@@ -155,14 +155,6 @@ pub enum DomainError {
         "no vessel lies inside the surface around the tissue: give the surface in the unit of the network, and at its place"
     )]
     NoVesselInside,
-    /// A node outside the organ joins two vessels that lead inside.
-    #[error("vessels leave the surface around the tissue and return at node {node} at {}: remove the node, or give a surface around it", place(*at))]
-    LeavesTwice {
-        /// Node of the network as it was read.
-        node: u32,
-        /// Place of the second cut.
-        at: [f64; 3],
-    },
     /// The organ cannot be opened where a vessel leaves.
     #[error("the surface around the tissue cannot be opened for the vessel at {}: {fault}", place(*at))]
     Gate {

@@ -77,6 +77,19 @@ impl NodeNames {
         at.map(|at| NodeId(at as u32))
     }
 
+    /// Names a further node, which is a copy of another one.
+    pub fn add_copy(&mut self, node: NodeId) {
+        match self {
+            Self::Order => {}
+            Self::Ids(ids) => ids.push(ids.iter().max().map_or(0, |id| id.saturating_add(1))),
+            Self::Words(words) => {
+                let Some(word) = words.get(node.index()) else { return };
+                let free = (2..).map(|k| format!("{word}_{k}")).find(|name| !words.contains(name));
+                words.extend(free);
+            }
+        }
+    }
+
     /// Name of a node.
     pub fn of(&self, node: NodeId) -> String {
         let named = match self {
