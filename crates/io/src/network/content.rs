@@ -84,7 +84,7 @@ impl NodeNames {
             Self::Ids(ids) => ids.push(ids.iter().max().map_or(0, |id| id.saturating_add(1))),
             Self::Words(words) => {
                 let Some(word) = words.get(node.index()) else { return };
-                let free = (2..).map(|k| format!("{word}_{k}")).find(|name| !words.contains(name));
+                let free = (2..words.len() + 3).map(|k| format!("{word}_{k}")).find(|name| !words.contains(name));
                 words.extend(free);
             }
         }
@@ -265,4 +265,22 @@ pub fn refinement_arrays(skeleton: &Skeleton, origin: &[Point3]) -> Vec<NetworkA
         NetworkArray::NodeInts("OriginalNode", skeleton.nodes.iter().map(|n| n.original).collect()),
         NetworkArray::NodeVectors("Displacement", moved.collect()),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_of_nodes_get_free_names() {
+        let mut order = NodeNames::Order;
+        order.add_copy(NodeId(0));
+        assert_eq!(order.of(NodeId(3)), "3");
+        let mut ids = NodeNames::Ids(vec![7, 9, 2]);
+        ids.add_copy(NodeId(0));
+        assert_eq!(ids.of(NodeId(3)), "10");
+        let mut words = NodeNames::Words(vec!["a".into(), "a_2".into()]);
+        words.add_copy(NodeId(0));
+        assert_eq!(words.of(NodeId(2)), "a_3");
+    }
 }
