@@ -112,7 +112,7 @@ pub struct DomainArgs {
 enum EndsArg {
     /// At the surface, which is opened there
     Surface,
-    /// Inside, at 1.5 radii from the surface
+    /// Inside, at 1.5 outer radii from the surface
     Inside,
     /// Refuse such networks
     Refuse,

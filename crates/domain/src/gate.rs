@@ -5,9 +5,9 @@
 
 use super::bisect::{bisect, edges};
 use super::error::{DomainError, GateFault};
+use super::inside::{compact, passes};
 use super::surface::LumenSurface;
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::adjacency::vertices_of;
 use anastomesh_mesh::facets::triangulate;
 use anastomesh_mesh::geometry::{Point3, Vec3, point_triangle, segment_segment};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -108,7 +108,7 @@ impl Gate {
         near(point_triangle(p, corners).1)
             || near(point_triangle(q, corners).1)
             || [[a, b], [b, c], [c, a]].into_iter().any(|side| near(segment_segment([p, q], side).distance))
-            || super::inside::passes([p, q], corners, true)
+            || passes([p, q], corners, true)
     }
 
     /// Point in the frame of the end, with the normal along z, in projection on its plane.
@@ -151,7 +151,11 @@ pub fn open(organ: &TriMesh, gates: Vec<Gate>) -> Result<(TriMesh, Vec<Opening>)
             return Err(gate.fault(GateFault::Close));
         }
     }
-    Ok(compact(&surface, openings))
+    let (surface, number) = compact(&surface);
+    for v in openings.iter_mut().flat_map(|opening| &mut opening.rim) {
+        *v = number[*v as usize];
+    }
+    Ok((surface, openings))
 }
 
 /// Triangles to remove for a gate: those at its end that are connected, and form a disc.
@@ -231,19 +235,6 @@ fn loops(triangles: impl Iterator<Item = [u32; 3]>) -> Option<Vec<Vec<u32>>> {
 
 fn pairs(ring: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     ring.iter().enumerate().map(|(i, &v)| [v, ring[(i + 1) % ring.len()]])
-}
-
-/// The surface without unused points.
-fn compact(surface: &TriMesh, mut openings: Vec<Opening>) -> (TriMesh, Vec<Opening>) {
-    let used = vertices_of(&surface.triangles, surface.points.len());
-    let (mut number, mut points) = (vec![u32::MAX; used.len()], Vec::new());
-    for v in (0..used.len()).filter(|&v| used[v]) {
-        number[v] = points.len() as u32;
-        points.push(surface.points[v]);
-    }
-    let triangles = surface.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
-    openings.iter_mut().flat_map(|opening| &mut opening.rim).for_each(|v| *v = number[*v as usize]);
-    (TriMesh { points, triangles }, openings)
 }
 
 impl Opening {

@@ -94,6 +94,11 @@ pub fn meeting(first: &TriMesh, second: &TriMesh) -> Vec<u32> {
 
 /// The surface without unused points, oriented outwards as a whole.
 pub fn tidy(surface: &TriMesh) -> TriMesh {
+    outward(compact(surface).0)
+}
+
+/// The surface without unused points, and the new number of each point that is used.
+pub fn compact(surface: &TriMesh) -> (TriMesh, Vec<u32>) {
     let used = vertices_of(&surface.triangles, surface.points.len());
     let (mut number, mut points) = (vec![0; used.len()], Vec::new());
     for v in (0..used.len()).filter(|&v| used[v]) {
@@ -101,7 +106,7 @@ pub fn tidy(surface: &TriMesh) -> TriMesh {
         points.push(surface.points[v]);
     }
     let triangles = surface.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
-    outward(TriMesh { points, triangles })
+    (TriMesh { points, triangles }, number)
 }
 
 fn outward(mut surface: TriMesh) -> TriMesh {
