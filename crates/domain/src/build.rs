@@ -14,10 +14,13 @@ use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::{Skeleton, Tubes};
-use anastomesh_tet::parts::{Watch, fill_spaced};
+use anastomesh_tet::parts::{Watch, fill_in_pieces};
 use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, Tetrahedralization, Tetrahedralizer};
 use rayon::prelude::*;
 use serde::Serialize;
+
+/// Maximum triangles around tissue that is filled as a whole.
+const PIECE: usize = 50_000;
 
 /// Mesh with several regions.
 #[derive(Clone, Debug)]
@@ -161,5 +164,5 @@ fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result
     if let Some(size) = plan.size {
         filler = filler.sizing(Sizing::Constant(size));
     }
-    fill_spaced(&filler, surface, &Watch::of(progress)).map_err(DomainError::Tissue)
+    fill_in_pieces(&filler, surface, PIECE, &Watch::of(progress)).map_err(DomainError::Tissue)
 }

@@ -107,14 +107,11 @@ impl<'a> Layout<'a> {
         (0..count as u32).map(|v| of_root.get(&joined.find(v)).copied().unwrap_or(0)).collect()
     }
 
-    /// Boundary of a region: the vessels in it, its own surface, and the surfaces in it.
+    /// Boundary of a region, oriented outwards: the vessels in it, its own surface, and the surfaces in it.
     fn outside(&self, region: usize, vessels: &[[u32; 3]], around: &Surroundings) -> Result<Outside, DomainError> {
         let mut triangles: Vec<[u32; 3]> = vessels.iter().filter(|t| self.home(t[0]) == region).copied().collect();
-        if region == 0 && !around.openings.is_empty() {
-            // The organ's surface, which faces out of the tissue, continues in them.
-            for t in &mut triangles {
-                t.swap(1, 2);
-            }
+        for t in &mut triangles {
+            t.swap(1, 2);
         }
         let mut of_surfaces = Vec::new();
         let inner = (1..around.surfaces.len()).filter(|&i| around.parents[i] == region && i != region);
@@ -122,7 +119,8 @@ impl<'a> Layout<'a> {
             let before: usize = around.surfaces[..i].iter().map(|surface| surface.points.len()).sum();
             let first = (self.lumen.surface.points.len() + self.shells.points.len() + before) as u32;
             let start = triangles.len();
-            triangles.extend(around.surfaces[i].triangles.iter().map(|t| t.map(|v| v + first)));
+            let outward = |[a, b, c]: [u32; 3]| if i == region { [a, b, c] } else { [a, c, b] };
+            triangles.extend(around.surfaces[i].triangles.iter().map(|t| outward(t.map(|v| v + first))));
             if i == 0 {
                 for opening in &around.openings {
                     let place = |v| self.place(v, around);

@@ -49,6 +49,8 @@ pub enum Stage {
     Optimize,
     /// Certifies the mesh against the input.
     Certify,
+    /// Fills tissue in pieces.
+    Tissue,
     /// Divides the vessels between the cells of a mesh around them.
     Embed,
 }
@@ -78,6 +80,7 @@ impl Stage {
             Self::Refine => "refine",
             Self::Optimize => "optimize",
             Self::Certify => "certify",
+            Self::Tissue => "tissue",
             Self::Embed => "embed",
         }
     }

@@ -260,6 +260,11 @@ impl Tetrahedralizer {
         self
     }
 
+    /// Requested interior and sizing.
+    pub(super) fn spacing(&self) -> (&Interior, &Sizing) {
+        (&self.interior, &self.sizing)
+    }
+
     /// Requested refinement and sizing.
     pub(super) fn refinement_and_sizing(&self) -> (Option<&Refinement>, &Sizing) {
         (self.refinement.as_ref(), &self.sizing)
@@ -278,7 +283,8 @@ impl Tetrahedralizer {
         self.run_watched(input.into(), &self.watch())
     }
 
-    fn run_watched(&self, plc: PlcRef, watch: &Watch) -> Result<Tetrahedralization, TetError> {
+    /// As [`Tetrahedralizer::run`], with a watch.
+    pub(super) fn run_watched(&self, plc: PlcRef, watch: &Watch) -> Result<Tetrahedralization, TetError> {
         watch.report(Stage::Validate, 0, 1)?;
         input::check_lengths(plc)?;
         let surface = plc.surface;

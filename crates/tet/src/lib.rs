@@ -94,6 +94,7 @@ mod options;
 mod outside;
 #[doc(hidden)]
 pub mod parts;
+mod pieces;
 mod plc;
 mod progress;
 mod recover;

@@ -7,4 +7,5 @@ pub use crate::delaunay::delaunay;
 pub use crate::layers::{Directions, Inset, Numbers, Places, inset, openness, rims, toward};
 pub use crate::names::Names;
 pub use crate::optimize::{OptimizeOptions, optimize};
+pub use crate::pieces::{Piece, Pieces, fill_in_pieces};
 pub use crate::progress::{Counter, Watch};

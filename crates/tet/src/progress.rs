@@ -27,6 +27,12 @@ impl<'a> Watch<'a> {
         Self { who: Some(who), is_told: false, budget: None }
     }
 
+    /// The same watch without reports.
+    #[must_use]
+    pub fn silent(&self) -> Self {
+        Self { is_told: false, ..*self }
+    }
+
     /// Limits the work by a budget, in place of the present one.
     #[must_use]
     pub fn within<'b>(&self, budget: &'b Budget) -> Watch<'b>

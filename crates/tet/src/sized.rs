@@ -26,7 +26,7 @@ const CLEARANCE: f64 = 0.45;
 const GROWING_CLEARANCE: f64 = 0.5;
 
 /// As [`GROWING_CLEARANCE`], for selected points. Distances between them are longer, too.
-const SPACED_CLEARANCE: f64 = 0.6;
+pub(super) const SPACED_CLEARANCE: f64 = 0.6;
 
 /// Radius-edge ratio above which tetrahedra are split if no bounds are given, where the wall allows. Without it, the mean
 /// radius ratio falls below TetGen's on thin surfaces.
@@ -92,7 +92,7 @@ pub(super) fn check(refinement: Option<&Refinement>, sizing: &Sizing, points: us
 }
 
 /// Options of the size field of an interior with these sizes.
-fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
+pub(super) fn tree_options(interior: &Interior, sizing: &Sizing) -> TreeOptions {
     match (interior, sizing) {
         // Lengths at points are interpolated.
         (Interior::Growing { .. }, Sizing::PerVertex(_)) => TreeOptions { doubling: None, ..TreeOptions::growing(1.0) },
@@ -107,7 +107,7 @@ fn size_tree(wall: &Wall, sizing: &Sizing, longest: Option<f64>, options: &TreeO
 }
 
 /// As [`size_tree`], with lengths at points inside.
-fn size_tree_around(
+pub(super) fn size_tree_around(
     wall: &Wall,
     inside: &[(Point3, f64)],
     sizing: &Sizing,

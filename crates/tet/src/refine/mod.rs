@@ -18,10 +18,8 @@ pub use goals::{Fault, Goals, RegionGoals};
 pub(crate) use goals::{circumcenter, smallest_sphere};
 pub use insert::{RefineReport, refine_complex};
 pub use points::{graded_points, surrounding_points};
-pub use sizes::SizeLimit;
-#[cfg(test)]
-use sizes::vertex_sizes;
-pub use spaced::spaced_points;
+pub use sizes::{SizeLimit, vertex_sizes};
+pub use spaced::{spaced_after, spaced_points};
 pub use tree::{SizeTree, TreeOptions};
 pub use wall::Wall;
 

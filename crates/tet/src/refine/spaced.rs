@@ -79,12 +79,20 @@ impl Balls {
 
 /// Points of a lattice that are as far apart as the lengths of a grading ask. The lattice should be finer.
 pub fn spaced_points(points: &[Point3], grading: &Grading) -> Vec<Point3> {
+    spaced_after(&[], points, grading)
+}
+
+/// As [`spaced_points`]; all points of the first list are tried before those of the second.
+pub fn spaced_after(first: &[Point3], second: &[Point3], grading: &Grading) -> Vec<Point3> {
+    let points = [first, second].concat();
+    let is_second = |i: u32| i as usize >= first.len();
     let from = points.first().map_or_else(Point3::origin, |p| *p);
     // Cube indices count from a point of the lattice.
     let local = |p: &Point3| Point3::from(p - from);
     let mut order: Vec<(f64, u32)> =
         points.par_iter().zip(0..points.len() as u32).map(|(p, i)| (grading.at(p), i)).collect();
-    order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    order
+        .par_sort_unstable_by(|a, b| is_second(a.1).cmp(&is_second(b.1)).then(a.0.total_cmp(&b.0)).then(a.1.cmp(&b.1)));
     let steepest = 1.0 + SPACING * grading.slope().min(MAX_SLOPE);
     let mut taken = Balls::default();
     let mut kept = Vec::new();
@@ -92,8 +100,9 @@ pub fn spaced_points(points: &[Point3], grading: &Grading) -> Vec<Point3> {
         let p = &points[i as usize];
         let center = local(p);
         let radius = SPACING * length;
-        // Balls around a point have lengths up to its own, and not much smaller.
-        let levels = level_of(radius / steepest)..=level_of(radius);
+        // Balls around a point have lengths up to its own, except those of the first list, and not much smaller.
+        let largest = if is_second(i) && !first.is_empty() { radius * steepest } else { radius };
+        let levels = level_of(radius / steepest)..=level_of(largest);
         if !taken.contain(&center, levels) {
             taken.insert(Ball { center, radius });
             kept.push(i);
