@@ -11,6 +11,7 @@
 mod directions;
 mod heights;
 mod improve;
+mod outside;
 mod settle;
 mod shell;
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use super::directions::directions;
 use super::heights::heights;
 use super::improve::Improver;
-use super::shell::{Shell, depths, of_caps};
-use crate::contacts::contacts;
+use super::outside::Outside;
+use super::shell::{Shell, depths};
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::layers::{Numbers, Places, Stack, Ways, rims, toward};
 use crate::progress::Watch;
@@ -53,7 +53,7 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
     let heights = heights(&joined(surface, around), wall, &ways, &wanted);
     let is_rim = rims(surface, |t| caps[t].is_none());
     let numbers = Numbers::new(on_wall.iter().copied(), is_rim.clone(), shells.iter().map(|s| s.layers).sum());
-    let outside = Outside::new(&numbers, given);
+    let mut outside = Outside::new(&numbers, given);
     let improver = Improver::new((surface, wall), &numbers, shells, &sides, &heights);
     let mut places = Places {
         surface,
@@ -65,6 +65,7 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
     };
     let length = |outer: &[Point3], v: usize| (outer[v] - points[v]).norm();
     let mut changed: Vec<u32> = (0..wall.len() as u32).collect();
+    let mut last = wall[0];
     for pass in 0..MAX_PASSES {
         watch.ask()?;
         improver.improve(&changed, &mut places.wanted);
@@ -72,7 +73,7 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
         let mut obstacles = stack.turned();
         let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
         if obstacles.is_empty() {
-            obstacles = outside.meeting(stack.points());
+            obstacles = outside.meeting(stack.points(), watch)?;
         }
         if obstacles.is_empty() {
             let share = |v: usize| match length(&places.wanted, v) / wanted[v] {
@@ -91,10 +92,11 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
         if let Some(&t) = obstacles.iter().find(least) {
             return stuck(t, reason);
         }
+        last = obstacles[0];
         places.wanted = outer;
         changed = improver.around_vertices(obstacles.into_iter().flatten());
     }
-    stuck(wall[0], Stuck::Budget)
+    stuck(last, Stuck::Budget)
 }
 
 /// The surface, and the obstacles with it.
@@ -115,39 +117,4 @@ fn copies(surface: &TriMesh, on_wall: &[bool], outer: &[Point3], shells: &[Shell
         all.extend(depths(shells, v).into_iter().map(|depth| toward(&surface.points[v], &outer[v], depth)));
     }
     all
-}
-
-/// Closed surface around the shells with its obstacles, in the numbers of the stack.
-struct Outside<'a> {
-    triangles: Vec<[u32; 3]>,
-    /// Triangle of the surface that each of these comes from; those of obstacles have none.
-    origins: Vec<[u32; 3]>,
-    around: Option<&'a TriMesh>,
-}
-
-impl<'a> Outside<'a> {
-    fn new(numbers: &Numbers, given: &Given<'a>) -> Self {
-        let Given { surface, wall, caps, around, .. } = *given;
-        let layers = numbers.layers();
-        let mut triangles: Vec<[u32; 3]> = wall.iter().map(|t| t.map(|v| numbers.copy(v, layers))).collect();
-        let mut origins = wall.to_vec();
-        for (_, cap) in of_caps(surface, caps) {
-            let ring = numbers.ring(&cap);
-            let base = |t: &[u32; 3]| t.map(|v| numbers.origin(v));
-            origins.extend(cap.iter().copied().chain(ring.iter().map(|(_, t)| base(t))));
-            triangles.extend(cap.into_iter().chain(ring.into_iter().map(|(_, t)| t)));
-        }
-        if let Some(around) = around {
-            triangles.extend(around.triangles.iter().map(|t| t.map(|v| v + numbers.len())));
-        }
-        Self { triangles, origins, around }
-    }
-
-    /// Triangles of the surface whose images intersect something.
-    fn meeting(&self, points: &[Point3]) -> Vec<[u32; 3]> {
-        let mut points = points.to_vec();
-        points.extend(self.around.iter().flat_map(|around| &around.points));
-        let pairs = contacts(&TriMesh { points, triangles: self.triangles.clone() });
-        pairs.into_iter().flatten().filter_map(|t| self.origins.get(t as usize).copied()).collect()
-    }
 }
