@@ -12,6 +12,7 @@ mod cells;
 mod labels;
 mod nested;
 pub mod parts;
+mod passes;
 mod regions;
 mod result;
 mod surface;
@@ -21,6 +22,7 @@ pub mod text;
 #[cfg(test)]
 mod tests;
 
+pub use passes::check_regions_in_passes;
 pub use result::{
     CheckReport, Counts, Expectation, Intersection, Line, LineResult, Offender, OffenderKind, Outcome, RegionCounts,
     Skipped, Verdict,

@@ -377,6 +377,11 @@ impl Tally {
         (self.0.expected, self.0.found) = (Some(expected), Some(found));
     }
 
+    /// True if nothing has been added, and compared lists agree.
+    pub(super) fn holds(&self) -> bool {
+        self.0.count == 0 && self.0.outcome == Outcome::Pass
+    }
+
     pub(super) fn done(mut self) -> LineResult {
         if self.0.count > 0 {
             self.0.outcome = Outcome::Fail;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 /// Indices of the copies of vertices: first the vertices of the surface, then the copies of each, from the wall
 /// inwards. A vertex without copies is its own copy in each layer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Numbers {
     /// Number of preceding vertices with copies; `None` for vertices without.
     slot: Vec<Option<u32>>,

@@ -19,6 +19,7 @@ mod tests;
 
 use crate::error::{InputArray, TetError};
 use crate::input;
+use crate::layers::Numbers;
 use crate::plc::InputKind;
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
@@ -27,6 +28,7 @@ use anastomesh_mesh::progress::Progress;
 use settle::{Given, Settled, settle};
 pub use shell::Shell;
 use shell::{first_layers, of_caps};
+use std::ops::Range;
 
 /// Fraction of the thickness asked for below which shells count as thin.
 const THIN: f64 = 0.5;
@@ -90,13 +92,30 @@ impl Shells {
         around: Option<&TriMesh>,
         progress: &dyn Progress,
     ) -> Result<Self, TetError> {
+        let (mut made, prisms) = Self::grown(surface, caps, shells, around, progress)?;
+        (made.tets, made.shell_of) = prisms.tets(0..prisms.len()).unzip();
+        Ok(made)
+    }
+
+    /// As [`Shells::around`]. The tetrahedra are not made yet: they are those of the prisms.
+    ///
+    /// # Errors
+    /// See [`Shells::around`].
+    pub fn grown(
+        surface: &TriMesh,
+        caps: &[Option<u32>],
+        shells: &[Shell],
+        around: Option<&TriMesh>,
+        progress: &dyn Progress,
+    ) -> Result<(Self, Prisms), TetError> {
         let watch = Watch::asking(progress);
         check(surface, caps, shells)?;
         input::validate(surface, &[], InputKind::Closed)?;
         let seen_from_inside = |(t, cap): (&[u32; 3], &Option<u32>)| cap.is_none().then_some([t[0], t[2], t[1]]);
         let wall: Vec<[u32; 3]> = surface.triangles.iter().zip(caps).filter_map(seen_from_inside).collect();
         let given = Given { surface, wall: &wall, caps, shells, around };
-        Ok(settle(&given, &watch)?.shells(&given))
+        let (made, numbers) = settle(&given, &watch)?.shells(&given);
+        Ok((made, Prisms { numbers, first: first_layers(shells), wall }))
     }
 
     /// Number of points with less than half of the thickness wanted.
@@ -127,30 +146,62 @@ fn check(surface: &TriMesh, caps: &[Option<u32>], shells: &[Shell]) -> Result<()
     Ok(())
 }
 
+/// Prisms between a wall and the outer side of its shells, cut into tetrahedra on demand.
+#[derive(Clone, Debug, Default)]
+pub struct Prisms {
+    numbers: Numbers,
+    /// First layer of each shell, and the number of all.
+    first: Vec<u32>,
+    /// Triangles of the wall, seen from inside.
+    wall: Vec<[u32; 3]>,
+}
+
+impl Prisms {
+    /// Number of triangles of the wall.
+    pub fn len(&self) -> usize {
+        self.wall.len()
+    }
+
+    /// True without shells.
+    pub fn is_empty(&self) -> bool {
+        self.wall.is_empty()
+    }
+
+    /// Number of tetrahedra at a triangle.
+    pub fn tets_per_triangle(&self) -> usize {
+        3 * self.numbers.layers() as usize
+    }
+
+    /// Tetrahedra at some triangles of the wall, with their shells.
+    pub fn tets(&self, triangles: Range<usize>) -> impl Iterator<Item = ([u32; 4], u32)> {
+        let shell_of = |layer: u32| shell_of_layer(&self.first, layer);
+        let at = move |t: &[u32; 3]| self.numbers.tets_at(*t).zip((0..).flat_map(|layer| [layer; 3]));
+        self.wall[triangles].iter().flat_map(at).map(move |(tet, layer)| (tet, shell_of(layer)))
+    }
+}
+
+fn shell_of_layer(first: &[u32], layer: u32) -> u32 {
+    first.partition_point(|&start| start <= layer) as u32 - 1
+}
+
 impl Settled<'_> {
-    /// Result of the growth.
-    fn shells(self, given: &Given) -> Shells {
+    /// Result of the growth without tetrahedra, and the numbers of its points.
+    fn shells(self, given: &Given) -> (Shells, Numbers) {
         let Self { stack, shares } = self;
+        let numbers = stack.numbers.clone();
         let first = first_layers(given.shells);
-        let shell_of_layer = |layer: u32| first.partition_point(|&start| start <= layer) as u32 - 1;
         let mut made = Shells { shares, ..Shells::default() };
-        for &triangle in given.wall {
-            for (tet, layer) in stack.numbers.tets_at(triangle).zip((0..).flat_map(|layer| [layer; 3])) {
-                made.tets.push(tet);
-                made.shell_of.push(shell_of_layer(layer));
-            }
-        }
         // The prisms see the wall from inside.
-        let outward = |[a, b, c]: [u32; 3], layer| [a, c, b].map(|v| stack.numbers.copy(v, layer));
+        let outward = |[a, b, c]: [u32; 3], layer| [a, c, b].map(|v| numbers.copy(v, layer));
         made.sides = first[1..].iter().map(|&layer| given.wall.iter().map(|t| outward(*t, layer)).collect()).collect();
         for (cap, triangles) in of_caps(given.surface, given.caps) {
-            let ring = stack.numbers.ring(&triangles);
+            let ring = numbers.ring(&triangles);
             for shell in 0..given.shells.len() as u32 {
-                let own = ring.iter().filter(|(layer, _)| shell_of_layer(*layer) == shell);
+                let own = ring.iter().filter(|(layer, _)| shell_of_layer(&first, *layer) == shell);
                 made.rings.push(Ring { cap, shell, triangles: own.map(|(_, triangle)| *triangle).collect() });
             }
         }
         made.points = stack.into_points().split_off(given.surface.points.len());
-        made
+        (made, numbers)
     }
 }

@@ -61,6 +61,7 @@ mod tests;
 pub use certificate::{certify_hollow, certify_with};
 pub use changed::{Changed, meetings_of};
 pub use pieces::{PiecesError, Unfit, check_pieces};
+pub(super) use sums::id_sums;
 pub use whole::{Looked, check_parts};
 
 use super::nested::Enclosed;

@@ -24,5 +24,11 @@ fn mix(mut x: u64) -> u64 {
 
 /// Checksum of a triangle of sorted vertices.
 pub(super) fn id_sum(vertices: [u32; 3]) -> u64 {
-    vertices.into_iter().fold(0x2545_f491_4f6c_dd1d, |sum, v| mix(sum ^ u64::from(v)))
+    id_sums(vertices)[0]
+}
+
+/// Two independent checksums of a triangle of sorted vertices.
+pub(in crate::check) fn id_sums(vertices: [u32; 3]) -> [u64; 2] {
+    [0x2545_f491_4f6c_dd1d, 0x9fb2_1c65_1e98_df25]
+        .map(|seed| vertices.into_iter().fold(seed, |sum, v| mix(sum ^ u64::from(v))))
 }

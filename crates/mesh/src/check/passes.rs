@@ -1,0 +1,433 @@
+//! Validity check of a mesh with regions in passes over its parts, without loading all of it.
+//!
+//! # Correctness
+//!
+//! Three facts are checked.
+//!
+//! 1. Every tetrahedron is positive by the exact predicate.
+//! 2. For every region, the faces of its tetrahedra, with their orientation, add up to its labelled faces: outer faces, and
+//!    interfaces from their own side. Faces of opposite orientation cancel. The sums are those of two 64-bit hashes of the
+//!    vertices, so that a difference is missed with a probability of 2^-128.
+//! 3. For every region, the boundary of it and of all regions with a smaller id together is a closed 2-manifold without
+//!    self-intersections, and none of its surfaces lies inside another with the same orientation.
+//!
+//! By 2 and 3, the winding number of the boundary of these regions together is 0 or 1 everywhere, and by 1 it is the number of their
+//! tetrahedra at a place. So no tetrahedra overlap, no face has more than two, and those of two are on opposite sides. Equal points
+//! would be in overlapping tetrahedra, or on a boundary that intersects itself.
+//!
+//! The conditions on the network hold for the lumen, and are taken from its own check.
+
+use super::parts::id_sums;
+use super::result::{CheckReport, Counts, Line, LineResult, Offender, OffenderKind, RegionCounts, Skipped, Tally};
+use super::surface::Boundary;
+use crate::geometry::predicates::{MAX_MAGNITUDE, orient3d};
+use crate::geometry::{DisjointSets, Point3};
+use crate::progress::{Progress, Stage, ask};
+use crate::quality::{QualitySum, Spokes, volume6};
+use crate::region::NamedRegion;
+use crate::source::{FacePiece, MeshSource, TetPiece};
+use crate::{Patch, TET_FACES};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::io;
+
+/// Checks a mesh whose regions are consecutive parts, by ascending id. `lumen` is the report on the lumen alone.
+///
+/// # Errors
+/// Errors of reading the mesh. Cancellation.
+pub fn check_regions_in_passes(
+    mesh: &dyn MeshSource,
+    regions: &[NamedRegion],
+    lumen: &CheckReport,
+    progress: &dyn Progress,
+) -> io::Result<CheckReport> {
+    let mut check = Passes::new(mesh, regions, progress);
+    check.labels()?;
+    check.tetrahedra()?;
+    let surfaces = check.surfaces()?;
+    Ok(check.report(lumen, surfaces))
+}
+
+/// Sum of oriented faces.
+type Chain = [u64; 2];
+
+fn add(chain: &mut Chain, face: [u32; 3], is_reversed: bool) {
+    let [a, b, c] = face;
+    let mut key = face;
+    key.sort_unstable();
+    // Odd permutations of the ascending order have the opposite sign.
+    let is_odd = key != [a, b, c] && key != [b, c, a] && key != [c, a, b];
+    for (sum, term) in chain.iter_mut().zip(id_sums(key)) {
+        *sum = if is_odd == is_reversed { sum.wrapping_add(term) } else { sum.wrapping_sub(term) };
+    }
+}
+
+/// Sizes of a region, and the sum of the faces of its tetrahedra.
+#[derive(Clone, Copy, Debug, Default)]
+struct RegionSum {
+    tets: usize,
+    volume: f64,
+    chain: Chain,
+}
+
+/// Result of a part's tetrahedra.
+#[derive(Default)]
+struct PartSum {
+    regions: FxHashMap<i32, RegionSum>,
+    quality: QualitySum,
+    repeated: Vec<u32>,
+    flat: Vec<(u32, Point3)>,
+    /// Tetrahedra, and the region of each.
+    tets: Vec<[u32; 4]>,
+    of_tets: Vec<i32>,
+}
+
+struct Passes<'a> {
+    mesh: &'a dyn MeshSource,
+    regions: &'a [NamedRegion],
+    progress: &'a dyn Progress,
+    /// Regions on both sides of the interfaces with a patch.
+    pairs: FxHashMap<i32, [i32; 2]>,
+    /// Sum of the labelled faces of each region, and their number.
+    labelled: FxHashMap<i32, (Chain, usize)>,
+    sums: FxHashMap<i32, RegionSum>,
+    components: FxHashMap<i32, usize>,
+    /// Components of all regions together.
+    joined: usize,
+    quality: QualitySum,
+    tallies: FxHashMap<Line, Tally>,
+}
+
+/// Results for the boundary of some regions together.
+struct SurfaceLines {
+    faces: usize,
+    surfaces: usize,
+    lines: Vec<LineResult>,
+}
+
+impl<'a> Passes<'a> {
+    fn new(mesh: &'a dyn MeshSource, regions: &'a [NamedRegion], progress: &'a dyn Progress) -> Self {
+        let pair = |patch: &Patch| Some((patch.id, NamedRegion::pair_of(regions, &patch.name)?));
+        Self {
+            mesh,
+            regions,
+            progress,
+            pairs: mesh.patches().iter().filter_map(pair).collect(),
+            labelled: FxHashMap::default(),
+            sums: FxHashMap::default(),
+            components: FxHashMap::default(),
+            joined: 0,
+            quality: QualitySum::default(),
+            tallies: FxHashMap::default(),
+        }
+    }
+
+    fn tally(&mut self, line: Line) -> &mut Tally {
+        self.tallies.entry(line).or_insert_with(|| Tally::new(line))
+    }
+
+    /// Region under each labelled face of a piece, and that beyond it.
+    fn sides(&self, piece: &FacePiece) -> Vec<[Option<i32>; 2]> {
+        let at = |values: &[i32], i: usize| values.get(i).copied().unwrap_or(0);
+        let pair = |i: usize| {
+            let own = at(&piece.blocks, i);
+            let beyond =
+                self.pairs.get(&at(&piece.patches, i)).map(|pair| if pair[0] == own { pair[1] } else { pair[0] });
+            [Some(own), beyond]
+        };
+        (0..piece.faces.len()).map(pair).collect()
+    }
+
+    /// Adds up the labelled faces.
+    fn labels(&mut self) -> io::Result<()> {
+        let mesh = self.mesh;
+        let mut wrong = Vec::new();
+        let mut labelled: FxHashMap<i32, (Chain, usize)> = FxHashMap::default();
+        mesh.each_faces(|piece| {
+            ask(self.progress)?;
+            for (i, (&face, [own, beyond])) in piece.faces.iter().zip(self.sides(piece)).enumerate() {
+                for (region, is_reversed) in [(own, false), (beyond, true)] {
+                    if let Some(region) = region {
+                        let (chain, count) = labelled.entry(region).or_default();
+                        add(chain, face, is_reversed);
+                        *count += 1;
+                    }
+                }
+                let pair = piece.patches.get(i).and_then(|patch| self.pairs.get(patch));
+                if pair.is_some_and(|pair| Some(pair[0]) != own) {
+                    wrong.push(face);
+                }
+            }
+            Ok(())
+        })?;
+        for face in wrong {
+            self.tally(Line::InterfaceSides).add(|| Offender::new(OffenderKind::Face, &face, None));
+        }
+        self.labelled = labelled;
+        Ok(())
+    }
+
+    /// Checks the tetrahedra, and adds up their faces.
+    fn tetrahedra(&mut self) -> io::Result<()> {
+        let counts = self.mesh.counts();
+        let mut unused = vec![true; counts.points];
+        let mut sets = RegionSets::new(counts.points);
+        let (mut first, mut seen) = (0_usize, FxHashMap::<i32, RegionSum>::default());
+        let mesh = self.mesh;
+        let (mut quality, mut repeated, mut flat) = (QualitySum::default(), Vec::new(), Vec::new());
+        let progress = self.progress;
+        mesh.each_part(
+            |part| {
+                ask(progress)?;
+                part_sum(mesh, &mesh.tets(part)?)
+            },
+            |part| {
+                quality.add_piece(&part.quality.piece());
+                repeated.extend(part.repeated.iter().map(|i| first as u32 + i));
+                flat.extend(part.flat.iter().map(|(i, p)| (first as u32 + i, *p)));
+                for (region, sum) in part.regions {
+                    let all = seen.entry(region).or_default();
+                    all.tets += sum.tets;
+                    all.volume += sum.volume;
+                    all.chain = [0, 1].map(|i| all.chain[i].wrapping_add(sum.chain[i]));
+                }
+                part.tets.as_flattened().iter().for_each(|&v| unused[v as usize] = false);
+                let mut rest = &part.tets[..];
+                for run in part.of_tets.chunk_by(|a, b| a == b) {
+                    let (own, others) = rest.split_at(run.len());
+                    sets.add(run[0], own);
+                    rest = others;
+                }
+                first += part.tets.len();
+                progress.at(Stage::Check, first as u64, counts.tets as u64);
+                Ok(())
+            },
+        )?;
+        for tet in repeated {
+            self.tally(Line::NoRepeatedVertex).add(|| Offender::new(OffenderKind::Tet, &[tet], None));
+        }
+        for (tet, place) in flat {
+            self.tally(Line::PositiveTets).add(|| Offender::new(OffenderKind::Tet, &[tet], Some(place)));
+        }
+        for v in (0..).zip(unused).filter(|(_, unused)| *unused).map(|(v, _)| v) {
+            self.tally(Line::NoUnusedPoints).add(|| Offender::new(OffenderKind::Point, &[v], None));
+        }
+        (self.sums, self.quality) = (seen, quality);
+        (self.components, self.joined) = sets.done();
+        self.compare();
+        Ok(())
+    }
+
+    /// Compares the sums of both, and the regions with their list.
+    fn compare(&mut self) {
+        let mut ids: Vec<i32> = self.sums.keys().chain(self.labelled.keys()).copied().collect();
+        ids.extend(self.regions.iter().map(|region| region.id));
+        ids.sort_unstable();
+        ids.dedup();
+        for id in ids {
+            let offender = || Offender { kind: OffenderKind::Region, ids: vec![i64::from(id)], position: None };
+            let found = self.sums.get(&id).map(|sum| sum.chain);
+            let is_named = self.regions.iter().any(|region| region.id == id);
+            if !is_named || found.is_none() {
+                self.tally(Line::RegionsNamed).add(offender);
+            }
+            if found != self.labelled.get(&id).map(|(chain, _)| *chain) {
+                self.tally(Line::LabelsMatchBoundary).add(offender);
+            }
+        }
+    }
+
+    /// Checks the boundary of the regions up to each.
+    fn surfaces(&self) -> io::Result<Vec<SurfaceLines>> {
+        self.regions.iter().map(|region| self.surface_up_to(region.id)).collect()
+    }
+
+    fn surface_up_to(&self, last: i32) -> io::Result<SurfaceLines> {
+        let mut faces: Vec<[u32; 3]> = Vec::new();
+        self.mesh.each_faces(|piece| {
+            ask(self.progress)?;
+            let is_in = |side: Option<i32>| side.is_some_and(|region| region <= last);
+            let sides = self.sides(piece);
+            faces.extend(piece.faces.iter().zip(&sides).filter(|(_, s)| is_in(s[0]) && !is_in(s[1])).map(|(f, _)| *f));
+            Ok(())
+        })?;
+        let mut used = faces.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let points = self.mesh.points_of(&used)?;
+        for v in faces.as_flattened_mut() {
+            *v = used.partition_point(|u| u < v) as u32;
+        }
+        let boundary = Boundary::new(&points, &faces);
+        let mut lines: Vec<LineResult> = boundary.manifold_lines().into();
+        let is_closed = !lines[0].fails();
+        let surfaces = boundary.surfaces().all.len();
+        lines.push(boundary.self_intersections(is_closed).0);
+        for offender in lines.iter_mut().flat_map(|line| &mut line.offenders) {
+            offender.ids.iter_mut().for_each(|id| *id = i64::from(used[*id as usize]));
+        }
+        Ok(SurfaceLines { faces: faces.len(), surfaces, lines })
+    }
+
+    /// Report on all conditions.
+    fn report(mut self, lumen: &CheckReport, surfaces: Vec<SurfaceLines>) -> CheckReport {
+        let counts = self.mesh.counts();
+        let outer = surfaces.last().map_or((0, 0), |outer| (outer.faces, outer.surfaces));
+        let within = surfaces.len().saturating_sub(1);
+        for (i, SurfaceLines { lines, .. }) in surfaces.into_iter().enumerate() {
+            let names = if i == within {
+                [Line::BoundaryEdges, Line::BoundaryFans, Line::NoSelfIntersection]
+            } else {
+                [Line::RegionBoundaries, Line::RegionBoundaries, Line::RegionIntersections]
+            };
+            for (name, found) in names.into_iter().zip(lines) {
+                self.tally(name).add_all(found);
+            }
+        }
+        let is_sound = self.tallies.values().all(Tally::holds);
+        let of_network: FxHashSet<Line> = OF_NETWORK.into_iter().collect();
+        let mut lines = Vec::new();
+        for line in Line::ALL.into_iter().chain(Line::OF_REGIONS) {
+            let own = self.tallies.remove(&line).map(Tally::done);
+            let taken = || lumen.line(line).filter(|_| of_network.contains(&line)).cloned();
+            lines.push(own.or_else(taken).unwrap_or_else(|| {
+                // The first three facts imply the rest.
+                let implied = Tally::new(line).done();
+                if is_sound { implied } else { LineResult::skipped(line, Skipped::Because(Line::PositiveTets)) }
+            }));
+        }
+        let region = |region: &NamedRegion| {
+            let sum = self.sums.get(&region.id).copied().unwrap_or_default();
+            RegionCounts {
+                id: region.id,
+                name: region.name.clone(),
+                tets: sum.tets,
+                components: self.components.get(&region.id).copied().unwrap_or(0),
+                boundary_faces: self.labelled.get(&region.id).map_or(0, |(_, count)| *count),
+                volume: sum.volume,
+            }
+        };
+        let regions: Vec<RegionCounts> = self.regions.iter().map(region).collect();
+        let counts = Counts {
+            points: counts.points,
+            tets: counts.tets,
+            boundary_faces: outer.0,
+            components: self.joined,
+            boundary_components: outer.1,
+            caps: self.mesh.patches().iter().filter(|patch| patch.cap.is_some()).count(),
+            volume: regions.iter().map(|region| region.volume).sum(),
+        };
+        CheckReport { regions, ..CheckReport::new(counts, lines, Some(self.quality.quality()), Vec::new()) }
+    }
+}
+
+/// Conditions that compare the lumen with its network.
+const OF_NETWORK: [Line; 10] = [
+    Line::Components,
+    Line::Loops,
+    Line::WallOrCap,
+    Line::OwnPatch,
+    Line::CapPerTerminal,
+    Line::CapDisc,
+    Line::CapFlat,
+    Line::CapCentred,
+    Line::CapArea,
+    Line::CapNormal,
+];
+
+fn part_sum(mesh: &dyn MeshSource, piece: &TetPiece) -> io::Result<PartSum> {
+    let mut made = PartSum::default();
+    let corners = mesh.corners_of(&piece.tets)?;
+    for (i, (tet, corners)) in (0..).zip(piece.tets.iter().zip(&corners)) {
+        let region = piece.blocks.get(i as usize).copied().unwrap_or(0);
+        let sum = made.regions.entry(region).or_default();
+        for side in TET_FACES {
+            add(&mut sum.chain, side.map(|corner| tet[corner]), false);
+        }
+        let [a, b, c, d] = corners.each_ref();
+        sum.tets += 1;
+        sum.volume += volume6(a, b, c, d) / 6.0;
+        let is_repeated = (0..4).any(|k| tet[k + 1..].contains(&tet[k]));
+        if is_repeated {
+            made.repeated.push(i);
+        }
+        let is_finite = corners.iter().all(|p| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
+        if !is_finite || orient3d(a, b, c, d) <= 0.0 {
+            made.flat.push((i, *a));
+        }
+        made.quality.include(&Spokes::new([a, b, c, d]));
+        made.of_tets.push(region);
+    }
+    made.tets = piece.tets.to_vec();
+    Ok(made)
+}
+
+/// Components of consecutive regions, and of all together. Tetrahedra with a common point are connected.
+struct RegionSets {
+    sets: DisjointSets,
+    region: Option<i32>,
+    /// Points of the present region.
+    points: Vec<u32>,
+    is_in: Vec<bool>,
+    /// Component of an earlier region with each point.
+    before: Vec<u32>,
+    all: DisjointSets,
+    found: FxHashMap<i32, usize>,
+}
+
+impl RegionSets {
+    fn new(points: usize) -> Self {
+        Self {
+            sets: DisjointSets::new(points),
+            region: None,
+            points: Vec::new(),
+            is_in: vec![false; points],
+            before: vec![u32::MAX; points],
+            all: DisjointSets::new(0),
+            found: FxHashMap::default(),
+        }
+    }
+
+    fn add(&mut self, region: i32, tets: &[[u32; 4]]) {
+        if self.region.is_some_and(|open| open != region) {
+            self.close();
+        }
+        self.region = Some(region);
+        for &[a, b, c, d] in tets {
+            for v in [a, b, c, d] {
+                if !self.is_in[v as usize] {
+                    self.is_in[v as usize] = true;
+                    self.points.push(v);
+                }
+                self.sets.join(a, v);
+            }
+        }
+    }
+
+    /// Ends a region.
+    fn close(&mut self) {
+        let Some(region) = self.region.take() else { return };
+        let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
+        for v in std::mem::take(&mut self.points) {
+            let root = self.sets.root(v);
+            let own = *numbers.entry(root).or_insert_with(|| self.all.push());
+            match self.before[v as usize] {
+                u32::MAX => {}
+                other => self.all.join(own, other),
+            }
+            self.before[v as usize] = own;
+            self.is_in[v as usize] = false;
+        }
+        *self.found.entry(region).or_default() += numbers.len();
+        self.sets = DisjointSets::new(self.before.len());
+    }
+
+    fn done(mut self) -> (FxHashMap<i32, usize>, usize) {
+        self.close();
+        let roots: FxHashSet<u32> = (0..self.all.len() as u32).map(|i| self.all.find(i)).collect();
+        (self.found, roots.len())
+    }
+}
+
+#[cfg(test)]
+#[path = "passes_tests.rs"]
+mod tests;
