@@ -23,18 +23,19 @@ use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
+use super::regions::{Lumen, Regions};
 use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Changes, Fidelity};
-use crate::pipeline::{Estimate, JointStyle, MeshPlan, RunReport, Shard};
+use crate::pipeline::{Estimate, JointStyle, MeshPlan, RunReport, Shard, Store};
 use crate::report::caps;
 use crate::report::inlets;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
 use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
-use anastomesh_domain::{Domain, DomainPlan, ShellsReport};
+use anastomesh_domain::{DomainError, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
@@ -45,7 +46,7 @@ use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
-use anastomesh_mesh::source::{MeshSource, gather};
+use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
 use anastomesh_skeleton::{NodeId, Skeleton};
@@ -240,7 +241,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         _ if prepared.plan.smooths_joints() => {
             let plan = prepared.plan.clone();
             let made = prepared.mesh(&bars).map_err(|e| args.explain(e, &plan, &bars))?;
-            args.finish(made, &plan, &domain, &bars)
+            args.finish(made, &plan, (&domain, None), &bars)
         }
         (work, _) => args.run_in_store(work, prepared, &domain, &bars),
     })
@@ -323,7 +324,7 @@ impl Args {
         let format = self.format.of(&self.output)?;
         let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
         let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
-        self.finish(made, &plan, domain, bars)
+        self.finish(made, &plan, (domain, Some(&store)), bars)
     }
 
     /// Writes the mesh and the reports.
@@ -331,7 +332,7 @@ impl Args {
         &self,
         mut made: NetworkMesh<M>,
         plan: &MeshPlan,
-        domain: &DomainPlan,
+        (domain, store): (&DomainPlan, Option<&Store>),
         bars: &Bars,
     ) -> Result<Exit, Failure> {
         bars.keep();
@@ -362,12 +363,14 @@ impl Args {
             self.typed(made.networks.refine.is_some()),
         );
         let expectation = notes.expectation.as_ref().unwrap_or(&made.expectation);
-        let domain = self.around((&made, expectation), written, domain, bars)?;
+        // Regions in parts have no files of their own.
+        let store = store.filter(|_| !self.domain.splits());
+        let domain = self.around((&made, expectation), written, (domain, store), bars)?;
         let (written, check): (&dyn MeshSource, _) = match &domain {
-            Some(domain) => (&domain.mesh, &domain.check),
+            Some(domain) => (domain.mesh(), domain.check()),
             None => (written, &made.check),
         };
-        notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.regions.clone());
+        notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.list().to_vec());
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         let mut parts = Vec::new();
@@ -393,7 +396,7 @@ impl Args {
             mesh: written,
             network: &made.network,
             check,
-            shells: domain.as_ref().and_then(|domain| domain.shells.as_ref()),
+            shells: domain.as_ref().and_then(Regions::shells),
             fidelity: made.fidelity.as_ref(),
             changes: &made.changes,
             caps: made.caps.as_ref(),
@@ -416,13 +419,13 @@ impl Args {
     }
 
     /// Regions around a lumen. `None` if none are asked for, or the lumen is not valid.
-    fn around<M>(
+    fn around<'a, M>(
         &self,
-        (made, expectation): (&NetworkMesh<M>, &Expectation),
-        lumen: &dyn MeshSource,
-        plan: &DomainPlan,
+        (made, expectation): (&'a NetworkMesh<M>, &'a Expectation),
+        mesh: &'a dyn MeshSource,
+        (plan, store): (&DomainPlan, Option<&'a Store>),
         bars: &Bars,
-    ) -> Result<Option<Domain>, Failure> {
+    ) -> Result<Option<Regions<'a>>, Failure> {
         if plan.is_plain() {
             return Ok(None);
         }
@@ -430,10 +433,10 @@ impl Args {
             bars.note("the lumen is not valid: it is written without regions around it");
             return Ok(None);
         }
-        let lumen =
-            gather(lumen).map_err(|e| if bars.is_cancelled() { self.stopped() } else { self.no_regions(&e) })?;
-        let made = Domain::around(lumen, &made.network, plan, expectation, bars);
-        made.map(Some).map_err(|e| if e.is_cancelled() { self.stopped() } else { self.no_regions(&e) })
+        let lumen = Lumen { mesh, network: &made.network, expectation, check: &made.check };
+        let stopped = |e: &DomainError| e.is_cancelled() || bars.is_cancelled();
+        let failed = |e: DomainError| if stopped(&e) { self.stopped() } else { self.no_regions(&e) };
+        Regions::around(&lumen, plan, store, bars).map(Some).map_err(failed)
     }
 
     /// Failure to make the regions.

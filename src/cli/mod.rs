@@ -37,6 +37,7 @@ mod picture;
 mod prepare;
 mod progress;
 mod refine;
+mod regions;
 mod render;
 mod replay;
 mod run;

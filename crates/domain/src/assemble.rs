@@ -2,48 +2,12 @@
 //!
 //! Points are those of the lumen, of the shells, of the surfaces around the tissue, and inside each of its regions, in this order.
 
+use super::labels::{LUMEN_ID, Labelled, regions, tissue_id};
 use super::layout::Layout;
 use super::plan::DomainPlan;
 use super::without::without;
-use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh, WALL};
+use anastomesh_mesh::{NamedRegion, VolumeMesh};
 use anastomesh_tet::Tetrahedralization;
-use std::collections::BTreeMap;
-
-/// Region inside the vessels.
-const LUMEN_ID: i32 = 1;
-
-/// Faces with their patches.
-#[derive(Default)]
-struct Labelled {
-    faces: Vec<[u32; 3]>,
-    patches: Vec<i32>,
-    regions: Vec<i32>,
-    names: BTreeMap<String, i32>,
-    list: Vec<Patch>,
-}
-
-impl Labelled {
-    /// Adds faces under a region to a patch.
-    fn add(&mut self, name: &str, region: i32, faces: impl IntoIterator<Item = [u32; 3]>) {
-        let before = self.faces.len();
-        self.faces.extend(faces);
-        if self.faces.len() > before {
-            let id = self.patch(name);
-            self.patches.resize(self.faces.len(), id);
-            self.regions.resize(self.faces.len(), region);
-        }
-    }
-
-    /// Id of the patch with this name, which is added if there is none.
-    fn patch(&mut self, name: &str) -> i32 {
-        let next = self.list.iter().map(|patch| patch.id).max().unwrap_or(0) + 1;
-        let id = *self.names.entry(name.to_owned()).or_insert(next);
-        if id == next {
-            self.list.push(Patch { id, name: name.to_owned(), cap: None });
-        }
-        id
-    }
-}
 
 /// Assembles the mesh; returns it with the ids and names of its regions. `tissue` has the regions around the vessels.
 pub fn assemble(
@@ -52,14 +16,10 @@ pub fn assemble(
     tissue: &[Tetrahedralization],
     plan: &DomainPlan,
 ) -> (VolumeMesh, Vec<NamedRegion>) {
-    let regions: Vec<NamedRegion> =
-        (LUMEN_ID..).zip(plan.names()).map(|(id, name)| NamedRegion::new(id, name)).collect();
-    let Layout { lumen: surface, shells, .. } = layout;
-    let (of_lumen, on_surface) = (lumen.mesh.points.len() as u32, surface.points.len() as u32);
-    let in_mesh = |v: u32| match v.checked_sub(on_surface) {
-        Some(i) => of_lumen + i,
-        None => surface.points[v as usize],
-    };
+    let regions = regions(plan);
+    let shells = layout.shells;
+    let of_lumen = lumen.mesh.points.len() as u32;
+    let in_mesh = |v: u32| layout.in_mesh(of_lumen, v);
     let mut mesh = lumen.mesh;
     let more: usize = tissue.iter().map(|region| region.mesh.tets.len()).sum();
     mesh.tets.reserve_exact(shells.tets.len() + more);
@@ -68,9 +28,8 @@ pub fn assemble(
     mesh.points.extend_from_slice(&shells.points);
     mesh.tets.extend(shells.tets.iter().map(|t| t.map(in_mesh)));
     tet_block.extend(shells.shell_of.iter().map(|&shell| LUMEN_ID + 1 + shell as i32));
-    let tissue_id = LUMEN_ID + 1 + plan.shells.len() as i32;
     mesh.points.extend(layout.around.iter().flat_map(|around| &around.surfaces).flat_map(|surface| &surface.points));
-    for ((id, region), outside) in (tissue_id..).zip(tissue).zip(&layout.outsides) {
+    for ((id, region), outside) in (tissue_id(plan)..).zip(tissue).zip(&layout.outsides) {
         let (given, last) = (outside.numbers.len(), mesh.points.len() as u32);
         let of_region = |v: u32| match v.checked_sub(given as u32) {
             Some(i) => last + i,
@@ -81,93 +40,12 @@ pub fn assemble(
         tet_block.resize(mesh.tets.len(), id);
     }
 
-    let mut faces = Labelled { list: lumen.patches, ..Labelled::default() };
-    let name_of = |region: i32| regions[(region - LUMEN_ID) as usize].name.as_str();
-    let last = LUMEN_ID + plan.shells.len() as i32;
-    // Outer side of a lumen or shell in the region of a surface.
-    let side = |region: i32, home: usize| match region {
-        _ if region < last => format!("interface_{}_{}", name_of(region), name_of(region + 1)),
-        _ if !tissue.is_empty() => format!("interface_{}_{}", name_of(region), name_of(tissue_id + home as i32)),
-        LUMEN_ID => "wall".to_owned(),
-        _ => format!("{}_outer", name_of(region)),
-    };
-    // Walls keep their id, and caps keep theirs with their names.
-    if let Some(wall) = faces.list.iter_mut().find(|patch| patch.id == WALL) {
-        wall.name = side(LUMEN_ID, 0);
-    }
-    faces.patches = lumen.boundary_patch;
-    if shells.sides.is_empty() {
-        divide_wall(&mut faces, layout, tissue.len(), &|home| side(LUMEN_ID, home));
-    }
-    faces.faces = lumen.boundary;
-    faces.regions = vec![LUMEN_ID; faces.faces.len()];
-    for (region, triangles) in (LUMEN_ID + 1..).zip(&shells.sides) {
-        let homes = if region == last { tissue.len().max(1) } else { 1 };
-        for home in 0..homes {
-            let own = triangles.iter().filter(|t| homes == 1 || layout.home(t[0]) == home);
-            faces.add(&side(region, home), region, own.map(|t| t.map(in_mesh)));
-        }
-    }
-    let cap_names: BTreeMap<i32, String> = faces.list.iter().map(|patch| (patch.id, patch.name.clone())).collect();
-    for ring in &shells.rings {
-        let region = LUMEN_ID + 1 + ring.shell as i32;
-        let cap = cap_names.get(&surface.patches[ring.cap as usize]).map_or("cap", String::as_str);
-        let name =
-            if shells.sides.len() == 1 { format!("ring_{cap}") } else { format!("ring_{}_{cap}", name_of(region)) };
-        faces.add(&name, region, ring.triangles.iter().map(|t| t.map(in_mesh)));
-    }
-    let region_name = |k: usize| name_of(tissue_id + k as i32);
-    label_tissue(&mut faces, layout, tissue, (tissue_id, &region_name), &in_mesh);
-    if tissue.len() > 1 {
-        let used = &faces.patches;
-        faces.list.retain(|patch| used.contains(&patch.id));
-    }
-    let Labelled { faces, patches: boundary_patch, regions: boundary_block, list, .. } = faces;
+    let of_lumen = (lumen.patches, lumen.boundary, lumen.boundary_patch);
+    let labelled = Labelled::of(of_lumen, layout, plan, &in_mesh);
+    let Labelled { faces, patches: boundary_patch, regions: boundary_block, list, .. } = labelled;
     let volume = VolumeMesh { mesh, tet_block, boundary: faces, boundary_block, boundary_patch, patches: list };
     let (out, kept): (Vec<NamedRegion>, Vec<NamedRegion>) =
         regions.into_iter().partition(|region| plan.without.contains(&region.name));
     let out: Vec<i32> = out.into_iter().map(|region| region.id).collect();
     (if out.is_empty() { volume } else { without(volume, &out) }, kept)
-}
-
-/// Gives the lumen's wall a patch in each region around it, beyond the first.
-fn divide_wall(faces: &mut Labelled, layout: &Layout, regions: usize, name: &dyn Fn(usize) -> String) {
-    let homes: Vec<usize> = layout.lumen.surface.triangles.iter().map(|t| layout.home(t[0])).collect();
-    for home in 1..regions {
-        let is_own = |(own, patch): (&usize, &i32)| *own == home && *patch == WALL;
-        if homes.iter().zip(&faces.patches).any(is_own) {
-            let id = faces.patch(&name(home));
-            for (own, patch) in homes.iter().zip(&mut faces.patches) {
-                if is_own((own, patch)) {
-                    *patch = id;
-                }
-            }
-        }
-    }
-}
-
-/// Labels the surfaces around the tissue: that of the organ, and interfaces between regions of the tissue.
-fn label_tissue<'a>(
-    faces: &mut Labelled,
-    layout: &Layout,
-    tissue: &[Tetrahedralization],
-    (first, name): (i32, &dyn Fn(usize) -> &'a str),
-    in_mesh: &dyn Fn(u32) -> u32,
-) {
-    for (k, (region, outside)) in tissue.iter().zip(&layout.outsides).enumerate() {
-        for (i, range) in &outside.of_surfaces {
-            // Region on the other side of the surface; the first surface has none.
-            let beyond = if *i == k { layout.around.map_or(0, |around| around.parents[*i]) } else { *i };
-            let patch = match (k, *i) {
-                (0, 0) => "organ".to_owned(),
-                // The region with the smaller id lists the face.
-                _ if beyond < k => continue,
-                _ => format!("interface_{}_{}", name(k), name(beyond)),
-            };
-            // Faces of a filled region face out of it.
-            let own = region.faces[range.clone()].iter();
-            let own = own.map(|t| t.map(|v| in_mesh(outside.numbers[v as usize])));
-            faces.add(&patch, first + k as i32, own);
-        }
-    }
 }

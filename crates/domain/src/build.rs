@@ -12,15 +12,16 @@ use super::unfold::unfold;
 use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{NamedRegion, TriMesh, VolumeMesh};
 use anastomesh_skeleton::{Skeleton, Tubes};
-use anastomesh_tet::parts::{Watch, fill_in_pieces};
+use anastomesh_tet::parts::{Prisms, Watch, fill_in_pieces};
 use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, Tetrahedralization, Tetrahedralizer};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// Maximum triangles around tissue that is filled as a whole.
-const PIECE: usize = 50_000;
+pub(super) const PIECE: usize = 50_000;
 
 /// Mesh with several regions.
 #[derive(Clone, Debug)]
@@ -64,10 +65,55 @@ impl Domain {
         expectation: &Expectation,
         progress: &dyn Progress,
     ) -> Result<Self, DomainError> {
-        plan.validate()?;
+        let grown = Grown::of(&lumen, network, plan, progress)?;
         let mut lumen = lumen;
-        let mut surface = LumenSurface::of(&lumen);
-        let moved = if plan.shells.is_empty() { 0 } else { unfold(&mut lumen.mesh, &mut surface) };
+        for &(v, place) in &grown.moved {
+            lumen.mesh.points[v as usize] = place;
+        }
+        let Grown { surface, mut shells, prisms, around, report, .. } = grown;
+        (shells.tets, shells.shell_of) = prisms.tets(0..prisms.len()).unzip();
+        drop(prisms);
+        let layout = Layout::new(&surface, &shells, around.as_ref())?;
+        let filler = plan.tissue.as_ref().map(TissuePlan::filler);
+        let watch = Watch::of(progress);
+        let fill = |filler| layout.outsides().map(|outside| fill(filler, outside, &watch)).collect();
+        let tissue: Vec<Tetrahedralization> = filler.as_ref().map_or(Ok(Vec::new()), fill)?;
+        let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);
+        // The check needs about as much memory as they do.
+        drop(layout);
+        drop((tissue, shells, surface, around));
+        progress.at(Stage::Check, 0, 0);
+        let check = check_regions(&mesh, &regions, Some(expectation));
+        Ok(Self { mesh, regions, shells: report, check })
+    }
+}
+
+/// Surface of a lumen with its shells, and what is around them.
+pub(super) struct Grown {
+    pub surface: LumenSurface,
+    /// Points of the lumen that have moved, ascending.
+    pub moved: Vec<(u32, Point3)>,
+    /// Shells without their tetrahedra, which the prisms make.
+    pub shells: Shells,
+    pub prisms: Prisms,
+    pub around: Option<Surroundings>,
+    pub report: Option<ShellsReport>,
+}
+
+impl Grown {
+    /// Grows the shells of a plan.
+    ///
+    /// # Errors
+    /// See [`DomainError`].
+    pub fn of(
+        lumen: &dyn MeshSource,
+        network: &Skeleton,
+        plan: &DomainPlan,
+        progress: &dyn Progress,
+    ) -> Result<Self, DomainError> {
+        plan.validate()?;
+        let mut surface = LumenSurface::of(lumen)?;
+        let moved = if plan.shells.is_empty() { Vec::new() } else { unfold(lumen, &mut surface)? };
         let sites = sites(&surface.surface, network);
         let thickness: Vec<f64> = sites.iter().map(|site| plan.thickness(site)).collect();
         let outer = sites.iter().zip(&thickness).map(|(site, own)| site.radius + own).fold(0.0, f64::max);
@@ -79,18 +125,10 @@ impl Domain {
         };
         let around = plan.tissue.as_ref().map(surround).transpose()?;
         let obstacles = around.as_ref().map(Surroundings::joined);
-        let shells = shells(&surface, &sites, &plan.shells, obstacles.as_ref(), progress)?;
-        let report = (!plan.shells.is_empty()).then(|| ShellsReport { moved, ..report(&shells, &surface) });
-        let layout = Layout::new(&surface, &shells, around.as_ref())?;
-        let fill = |tissue| layout.outsides().map(|outside| fill(tissue, outside, progress)).collect();
-        let tissue: Vec<Tetrahedralization> = plan.tissue.as_ref().map_or(Ok(Vec::new()), fill)?;
-        let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);
-        // The check needs about as much memory as they do.
-        drop(layout);
-        drop((tissue, shells, surface, around, obstacles));
-        progress.at(Stage::Check, 0, 0);
-        let check = check_regions(&mesh, &regions, Some(expectation));
-        Ok(Self { mesh, regions, shells: report, check })
+        let (shells, prisms) = shells(&surface, &sites, &plan.shells, obstacles.as_ref(), progress)?;
+        let report =
+            (!plan.shells.is_empty()).then(|| ShellsReport { moved: moved.len(), ..report(&shells, &surface) });
+        Ok(Self { surface, moved, shells, prisms, around, report })
     }
 }
 
@@ -120,16 +158,16 @@ fn shells(
     plans: &[ShellPlan],
     around: Option<&TriMesh>,
     progress: &dyn Progress,
-) -> Result<Shells, DomainError> {
+) -> Result<(Shells, Prisms), DomainError> {
     if plans.is_empty() {
-        return Ok(Shells::default());
+        return Ok(Default::default());
     }
     let shell = |plan: &ShellPlan| {
         let thickness = sites.iter().map(|site| plan.thickness.at(site)).collect();
         Shell::new(thickness).layers(plan.layers).growth(plan.growth)
     };
     let wanted: Vec<Shell> = plans.iter().map(shell).collect();
-    Shells::around(&lumen.surface, &lumen.caps, &wanted, around, progress).map_err(|source| {
+    Shells::grown(&lumen.surface, &lumen.caps, &wanted, around, progress).map_err(|source| {
         let v = match &source {
             TetError::Stuck {
                 part: Obstacle::Triangle([v, ..]) | Obstacle::Edge([v, _]) | Obstacle::Point(v), ..
@@ -158,11 +196,15 @@ fn report(shells: &Shells, lumen: &LumenSurface) -> ShellsReport {
     }
 }
 
-/// Fills a region of the tissue. The points of its mesh begin with those of the surface.
-fn fill(plan: &TissuePlan, surface: &TriMesh, progress: &dyn Progress) -> Result<Tetrahedralization, DomainError> {
-    let mut filler = Tetrahedralizer::new().interior(Interior::Growing { growth: plan.growth });
-    if let Some(size) = plan.size {
-        filler = filler.sizing(Sizing::Constant(size));
+impl TissuePlan {
+    /// Tetrahedralizer of the tissue.
+    pub(super) fn filler(&self) -> Tetrahedralizer {
+        let filler = Tetrahedralizer::new().interior(Interior::Growing { growth: self.growth });
+        self.size.map_or(filler.clone(), |size| filler.sizing(Sizing::Constant(size)))
     }
-    fill_in_pieces(&filler, surface, PIECE, &Watch::of(progress)).map_err(DomainError::Tissue)
+}
+
+/// Fills a region of the tissue. The points of its mesh begin with those of the surface.
+fn fill(filler: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, DomainError> {
+    fill_in_pieces(filler, surface, PIECE, watch).map_err(DomainError::Tissue)
 }

@@ -12,6 +12,9 @@ pub enum DomainError {
     /// The plan is invalid.
     #[error(transparent)]
     Plan(#[from] DomainPlanError),
+    /// A part of the mesh cannot be read or stored.
+    #[error("the regions cannot be stored: {0}")]
+    Io(#[from] std::io::Error),
     /// No shell fits at a place.
     #[error("no space for {shells} at {}: {source}", place(*at))]
     Shell {
@@ -214,6 +217,7 @@ impl DomainError {
             | Self::Hull(source)
             | Self::Remesh(source)
             | Self::Tissue(source) => *source == TetError::Cancelled,
+            Self::Io(source) => anastomesh_mesh::progress::Cancelled::is_in(source),
             Self::Pieces(source) => *source == PiecesError::Cancelled,
             _ => false,
         }

@@ -56,6 +56,14 @@ impl<'a> Layout<'a> {
         self.outsides.iter().map(|outside| &outside.boundary)
     }
 
+    /// Number in the mesh of a point. Those of the lumen keep theirs, and all others follow its `of_lumen` points.
+    pub fn in_mesh(&self, of_lumen: u32, v: u32) -> u32 {
+        match v.checked_sub(self.lumen.points.len() as u32) {
+            Some(i) => of_lumen + i,
+            None => self.lumen.points[v as usize],
+        }
+    }
+
     /// Surface that directly contains a point of lumen or shells on the outside.
     pub fn home(&self, v: u32) -> usize {
         self.homes.get(v as usize).copied().unwrap_or(0)

@@ -17,7 +17,7 @@
 //! |---|---|
 //! | plan shells and tissue | [`DomainPlan`], [`ShellPlan`], [`TissuePlan`], [`TissueRegion`] |
 //! | cut vessels that leave the organ | [`CutNetwork`] |
-//! | carry out the plan | [`Domain::around`] |
+//! | carry out the plan | [`Domain::around`], [`DomainInParts::around`] |
 //! | embed vessels as lines in tissue | [`EmbedPlan`], [`Embedding`], [`Pieces`] |
 //!
 //! The crate has no features.
@@ -32,10 +32,13 @@ mod error;
 mod gate;
 mod hull;
 mod inside;
+mod labels;
 mod layout;
 mod nested;
 mod organ;
+mod parts;
 mod plan;
+mod shelf;
 mod surface;
 mod unfold;
 mod without;
@@ -44,7 +47,9 @@ pub use build::{Domain, ShellsReport};
 pub use cut::{CutNetwork, CutReport, VesselEnds};
 pub use embed::{EmbedPlan, Embedding, Piece, PieceFault, Pieces, PiecesError};
 pub use error::{DomainError, GateFault};
+pub use parts::{DomainInParts, RegionParts};
 pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
+pub use shelf::Shelf;
 
 /// The example of the README is a test.
 #[cfg(doctest)]

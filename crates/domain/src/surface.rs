@@ -1,8 +1,10 @@
 //! Boundary of a lumen as a surface with its own points.
 
-use anastomesh_mesh::geometry::{DisjointSets, Point3};
-use anastomesh_mesh::{TriMesh, VolumeMesh, WALL};
+use anastomesh_mesh::geometry::DisjointSets;
+use anastomesh_mesh::source::MeshSource;
+use anastomesh_mesh::{TriMesh, WALL};
 use rustc_hash::FxHashMap;
+use std::io;
 
 /// Boundary of a lumen.
 pub struct LumenSurface {
@@ -18,17 +20,28 @@ pub struct LumenSurface {
 
 impl LumenSurface {
     /// Boundary of a mesh.
-    pub fn of(volume: &VolumeMesh) -> Self {
-        let mut points: Vec<u32> = volume.boundary.as_flattened().to_vec();
-        points.sort_unstable();
-        points.dedup();
-        let mut number = vec![u32::MAX; volume.mesh.points.len()];
+    ///
+    /// # Errors
+    /// Errors of reading the mesh.
+    pub fn of(mesh: &dyn MeshSource) -> io::Result<Self> {
+        let (mut triangles, mut of_faces) = (Vec::new(), Vec::new());
+        mesh.each_faces(|piece| {
+            triangles.extend_from_slice(&piece.faces);
+            of_faces.extend_from_slice(&piece.patches);
+            Ok(())
+        })?;
+        let mut number = vec![u32::MAX; mesh.counts().points];
+        for &v in triangles.as_flattened() {
+            number[v as usize] = 0;
+        }
+        let points: Vec<u32> = (0..).zip(&number).filter(|(_, n)| **n == 0).map(|(v, _)| v).collect();
         (0..).zip(&points).for_each(|(i, &v)| number[v as usize] = i);
-        let triangles = volume.boundary.iter().map(|face| face.map(|v| number[v as usize])).collect();
-        let places: Vec<Point3> = points.iter().map(|&v| volume.mesh.points[v as usize]).collect();
-        let surface = TriMesh { points: places, triangles };
-        let (caps, patches) = caps(&surface, &volume.boundary_patch);
-        Self { surface, points, caps, patches }
+        for v in triangles.as_flattened_mut() {
+            *v = number[*v as usize];
+        }
+        let surface = TriMesh { points: mesh.points_of(&points)?, triangles };
+        let (caps, patches) = caps(&surface, &of_faces);
+        Ok(Self { surface, points, caps, patches })
     }
 }
 

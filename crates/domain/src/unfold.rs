@@ -4,13 +4,15 @@
 //! up to two edges away move as far as necessary, and the tetrahedra of the lumen stay positive.
 
 use super::surface::LumenSurface;
-use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::Incidence;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::source::MeshSource;
 use anastomesh_tet::parts::openness;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
+use std::io;
 
 /// Openness below which a vertex is folded: the least cosine between its direction and the normals of its triangles.
 const FOLDED: f64 = 0.1;
@@ -19,26 +21,31 @@ const PASSES: usize = 30;
 /// Steps of a vertex, relative to its mean edge.
 const STEPS: [f64; 5] = [0.4, 0.15, 0.05, 0.015, 0.005];
 
-/// Moves folded vertices of the wall. Returns the number of moved vertices.
-pub fn unfold(mesh: &mut TetMesh, lumen: &mut LumenSurface) -> usize {
+/// Moves folded vertices of the wall. Returns the vertices of the mesh that move, ascending, with their new positions.
+///
+/// # Errors
+/// Errors of reading the mesh.
+pub fn unfold(mesh: &dyn MeshSource, lumen: &mut LumenSurface) -> io::Result<Vec<(u32, Point3)>> {
     let mut wall = Wall::of(lumen);
     let all: Vec<u32> = (0..lumen.surface.points.len() as u32).filter(|v| !wall.of_caps.contains(v)).collect();
     let mut folded = wall.folded(&all);
     if folded.is_empty() {
-        return 0;
+        return Ok(Vec::new());
     }
     let near = wall.around(&wall.around(&folded));
-    let tets = tets_at(mesh, near.iter().map(|&v| lumen.points[v as usize]));
-    let mut moved = FxHashSet::default();
+    let mut stars = Stars::of(mesh, near.iter().map(|&v| lumen.points[v as usize]))?;
+    let mut moved = BTreeMap::new();
     for _ in 0..PASSES {
         for v in wall.around(&wall.around(&folded)) {
-            let vertex = lumen.points[v as usize];
             // Only vertices around those that were folded at first may move.
-            let Some(tets) = tets.get(&vertex) else { continue };
-            if let Some(place) = wall.better(v, |p| stays_positive(mesh, tets, vertex, p)) {
+            let vertex = lumen.points[v as usize];
+            if !stars.tets.contains_key(&vertex) {
+                continue;
+            }
+            if let Some(place) = wall.better(v, |p| stars.stay_positive(vertex, p)) {
                 wall.points[v as usize] = place;
-                mesh.points[vertex as usize] = place;
-                moved.insert(v);
+                stars.points.insert(vertex, place);
+                moved.insert(vertex, place);
             }
         }
         folded = wall.folded(&near);
@@ -47,7 +54,42 @@ pub fn unfold(mesh: &mut TetMesh, lumen: &mut LumenSurface) -> usize {
         }
     }
     lumen.surface.points = wall.points;
-    moved.len()
+    Ok(moved.into_iter().collect())
+}
+
+/// Tetrahedra at some vertices.
+struct Stars {
+    tets: FxHashMap<u32, Vec<[u32; 4]>>,
+    points: FxHashMap<u32, Point3>,
+}
+
+impl Stars {
+    fn of(mesh: &dyn MeshSource, vertices: impl Iterator<Item = u32>) -> io::Result<Self> {
+        let mut tets: FxHashMap<u32, Vec<[u32; 4]>> = vertices.map(|v| (v, Vec::new())).collect();
+        mesh.each_tets(|piece| {
+            for tet in piece.tets.iter() {
+                for v in tet {
+                    if let Some(own) = tets.get_mut(v) {
+                        own.push(*tet);
+                    }
+                }
+            }
+            Ok(())
+        })?;
+        let mut ids: Vec<u32> = tets.values().flatten().flatten().copied().collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let points = ids.iter().copied().zip(mesh.points_of(&ids)?).collect();
+        Ok(Self { tets, points })
+    }
+
+    /// True if the tetrahedra at a vertex stay positive when it moves.
+    fn stay_positive(&self, vertex: u32, place: &Point3) -> bool {
+        self.tets[&vertex].iter().all(|tet| {
+            let [a, b, c, d] = tet.map(|v| if v == vertex { place } else { &self.points[&v] });
+            orient3d(a, b, c, d) > 0.0
+        })
+    }
 }
 
 /// Wall of a lumen with its triangles at each vertex.
@@ -139,30 +181,10 @@ fn ways() -> impl Iterator<Item = Vec3> {
     all.filter_map(|way| way.try_normalize(0.0))
 }
 
-/// Tetrahedra at some vertices.
-fn tets_at(mesh: &TetMesh, vertices: impl Iterator<Item = u32>) -> FxHashMap<u32, Vec<[u32; 4]>> {
-    let mut found: FxHashMap<u32, Vec<[u32; 4]>> = vertices.map(|v| (v, Vec::new())).collect();
-    for tet in &mesh.tets {
-        for v in tet {
-            if let Some(own) = found.get_mut(v) {
-                own.push(*tet);
-            }
-        }
-    }
-    found
-}
-
-/// True if tetrahedra stay positive when a vertex moves.
-fn stays_positive(mesh: &TetMesh, tets: &[[u32; 4]], vertex: u32, place: &Point3) -> bool {
-    tets.iter().all(|tet| {
-        let [a, b, c, d] = tet.map(|v| if v == vertex { place } else { &mesh.points[v as usize] });
-        orient3d(a, b, c, d) > 0.0
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use anastomesh_mesh::VolumeMesh;
     use anastomesh_mesh::check::check_tets;
     use anastomesh_mesh::shapes::sphere_surface;
     use anastomesh_tet::Tetrahedralizer;
@@ -179,8 +201,11 @@ mod tests {
         let mut lumen =
             LumenSurface { points: (0..surface.points.len() as u32).collect(), surface, caps, patches: Vec::new() };
         let before = Wall::of(&lumen).openness(40);
-        let moved = unfold(&mut mesh, &mut lumen);
-        assert!(before < FOLDED && moved > 0, "{before} {moved}");
+        let moved = unfold(&VolumeMesh { mesh: mesh.clone(), ..VolumeMesh::default() }, &mut lumen).expect("in memory");
+        for &(v, place) in &moved {
+            mesh.points[v as usize] = place;
+        }
+        assert!(before < FOLDED && !moved.is_empty(), "{before}");
         assert!(Wall::of(&lumen).openness(40) >= FOLDED);
         assert_eq!(mesh.points[40], lumen.surface.points[40]);
         let faults: Vec<_> = check_tets(&mesh, None).failed().map(|line| line.line).collect();

@@ -17,6 +17,7 @@ mod shards;
 mod shelf;
 #[cfg(test)]
 mod tests;
+mod tissue;
 mod whole_file;
 
 use std::collections::hash_map::Entry;

@@ -26,7 +26,7 @@ use crate::progress::{Progress, Stage, ask};
 use crate::quality::{QualitySum, Spokes, volume6};
 use crate::region::NamedRegion;
 use crate::source::{FacePiece, MeshSource, TetPiece};
-use crate::{Patch, TET_FACES};
+use crate::{Patch, TET_FACES, face_key, same_turn};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 
@@ -41,8 +41,10 @@ pub fn check_regions_in_passes(
     progress: &dyn Progress,
 ) -> io::Result<CheckReport> {
     let mut check = Passes::new(mesh, regions, progress);
-    check.labels()?;
+    check.faces()?;
     check.tetrahedra()?;
+    check.labels()?;
+    check.compare();
     let surfaces = check.surfaces()?;
     Ok(check.report(lumen, surfaces))
 }
@@ -79,6 +81,15 @@ struct PartSum {
     /// Tetrahedra, and the region of each.
     tets: Vec<[u32; 4]>,
     of_tets: Vec<i32>,
+    /// Unnamed faces that the tetrahedra have from the other side, with their region.
+    beyond: Vec<([u32; 3], i32)>,
+}
+
+/// Labelled face on no named interface.
+struct Unnamed {
+    face: [u32; 3],
+    /// Region beyond it, if tetrahedra have it from there.
+    beyond: Option<i32>,
 }
 
 struct Passes<'a> {
@@ -87,6 +98,8 @@ struct Passes<'a> {
     progress: &'a dyn Progress,
     /// Regions on both sides of the interfaces with a patch.
     pairs: FxHashMap<i32, [i32; 2]>,
+    /// Faces that are on no named interface, with the region beyond each, if tetrahedra of another region have it.
+    unnamed: FxHashMap<[u32; 3], Unnamed>,
     /// Sum of the labelled faces of each region, and their number.
     labelled: FxHashMap<i32, (Chain, usize)>,
     sums: FxHashMap<i32, RegionSum>,
@@ -112,6 +125,7 @@ impl<'a> Passes<'a> {
             regions,
             progress,
             pairs: mesh.patches().iter().filter_map(pair).collect(),
+            unnamed: FxHashMap::default(),
             labelled: FxHashMap::default(),
             sums: FxHashMap::default(),
             components: FxHashMap::default(),
@@ -126,35 +140,29 @@ impl<'a> Passes<'a> {
     }
 
     /// Region under each labelled face of a piece, and that beyond it.
-    fn sides(&self, piece: &FacePiece) -> Vec<[Option<i32>; 2]> {
+    fn sides(&self, piece: &FacePiece) -> Vec<(i32, Option<i32>)> {
         let at = |values: &[i32], i: usize| values.get(i).copied().unwrap_or(0);
-        let pair = |i: usize| {
+        let pair = |(i, face): (usize, &[u32; 3])| {
             let own = at(&piece.blocks, i);
-            let beyond =
-                self.pairs.get(&at(&piece.patches, i)).map(|pair| if pair[0] == own { pair[1] } else { pair[0] });
-            [Some(own), beyond]
+            let other = |[a, b]: &[i32; 2]| if *a == own { *b } else { *a };
+            let named = self.pairs.get(&at(&piece.patches, i)).map(other);
+            (own, named.or_else(|| self.unnamed.get(&face_key(*face))?.beyond))
         };
-        (0..piece.faces.len()).map(pair).collect()
+        piece.faces.iter().enumerate().map(pair).collect()
     }
 
-    /// Adds up the labelled faces.
-    fn labels(&mut self) -> io::Result<()> {
-        let mesh = self.mesh;
-        let mut wrong = Vec::new();
-        let mut labelled: FxHashMap<i32, (Chain, usize)> = FxHashMap::default();
-        mesh.each_faces(|piece| {
+    /// Lists the faces on no named interface. Tests the others for the region under them.
+    fn faces(&mut self) -> io::Result<()> {
+        let (mut wrong, mut unnamed) = (Vec::new(), FxHashMap::default());
+        self.mesh.each_faces(|piece| {
             ask(self.progress)?;
-            for (i, (&face, [own, beyond])) in piece.faces.iter().zip(self.sides(piece)).enumerate() {
-                for (region, is_reversed) in [(own, false), (beyond, true)] {
-                    if let Some(region) = region {
-                        let (chain, count) = labelled.entry(region).or_default();
-                        add(chain, face, is_reversed);
-                        *count += 1;
+            for (i, &face) in piece.faces.iter().enumerate() {
+                match piece.patches.get(i).and_then(|patch| self.pairs.get(patch)) {
+                    None => {
+                        unnamed.insert(face_key(face), Unnamed { face, beyond: None });
                     }
-                }
-                let pair = piece.patches.get(i).and_then(|patch| self.pairs.get(patch));
-                if pair.is_some_and(|pair| Some(pair[0]) != own) {
-                    wrong.push(face);
+                    Some(pair) if piece.blocks.get(i) != Some(&pair[0]) => wrong.push(face),
+                    Some(_) => {}
                 }
             }
             Ok(())
@@ -162,6 +170,26 @@ impl<'a> Passes<'a> {
         for face in wrong {
             self.tally(Line::InterfaceSides).add(|| Offender::new(OffenderKind::Face, &face, None));
         }
+        self.unnamed = unnamed;
+        Ok(())
+    }
+
+    /// Adds up the labelled faces.
+    fn labels(&mut self) -> io::Result<()> {
+        let mut labelled: FxHashMap<i32, (Chain, usize)> = FxHashMap::default();
+        self.mesh.each_faces(|piece| {
+            ask(self.progress)?;
+            for (&face, (own, beyond)) in piece.faces.iter().zip(self.sides(piece)) {
+                for (region, is_reversed) in [(Some(own), false), (beyond, true)] {
+                    if let Some(region) = region {
+                        let (chain, count) = labelled.entry(region).or_default();
+                        add(chain, face, is_reversed);
+                        *count += 1;
+                    }
+                }
+            }
+            Ok(())
+        })?;
         self.labelled = labelled;
         Ok(())
     }
@@ -175,12 +203,19 @@ impl<'a> Passes<'a> {
         let mesh = self.mesh;
         let (mut quality, mut repeated, mut flat) = (QualitySum::default(), Vec::new(), Vec::new());
         let progress = self.progress;
+        let mut unnamed_points = vec![false; counts.points];
+        for &v in self.unnamed.keys().flatten() {
+            unnamed_points[v as usize] = true;
+        }
+        let (on_unnamed, unnamed) = (|v: u32| unnamed_points[v as usize], &self.unnamed);
+        let mut beyond = Vec::new();
         mesh.each_part(
             |part| {
                 ask(progress)?;
-                part_sum(mesh, &mesh.tets(part)?)
+                part_sum(mesh, &mesh.tets(part)?, &on_unnamed, unnamed)
             },
             |part| {
+                beyond.extend(part.beyond);
                 quality.add_piece(&part.quality.piece());
                 repeated.extend(part.repeated.iter().map(|i| first as u32 + i));
                 flat.extend(part.flat.iter().map(|(i, p)| (first as u32 + i, *p)));
@@ -191,17 +226,17 @@ impl<'a> Passes<'a> {
                     all.chain = [0, 1].map(|i| all.chain[i].wrapping_add(sum.chain[i]));
                 }
                 part.tets.as_flattened().iter().for_each(|&v| unused[v as usize] = false);
-                let mut rest = &part.tets[..];
-                for run in part.of_tets.chunk_by(|a, b| a == b) {
-                    let (own, others) = rest.split_at(run.len());
-                    sets.add(run[0], own);
-                    rest = others;
-                }
+                sets.add(&part.tets, &part.of_tets);
                 first += part.tets.len();
                 progress.at(Stage::Check, first as u64, counts.tets as u64);
                 Ok(())
             },
         )?;
+        for (face, region) in beyond {
+            if let Some(known) = self.unnamed.get_mut(&face) {
+                known.beyond = Some(region);
+            }
+        }
         for tet in repeated {
             self.tally(Line::NoRepeatedVertex).add(|| Offender::new(OffenderKind::Tet, &[tet], None));
         }
@@ -213,7 +248,6 @@ impl<'a> Passes<'a> {
         }
         (self.sums, self.quality) = (seen, quality);
         (self.components, self.joined) = sets.done();
-        self.compare();
         Ok(())
     }
 
@@ -245,9 +279,9 @@ impl<'a> Passes<'a> {
         let mut faces: Vec<[u32; 3]> = Vec::new();
         self.mesh.each_faces(|piece| {
             ask(self.progress)?;
-            let is_in = |side: Option<i32>| side.is_some_and(|region| region <= last);
+            let bounds = |(own, beyond): (i32, Option<i32>)| own <= last && beyond.is_none_or(|beyond| beyond > last);
             let sides = self.sides(piece);
-            faces.extend(piece.faces.iter().zip(&sides).filter(|(_, s)| is_in(s[0]) && !is_in(s[1])).map(|(f, _)| *f));
+            faces.extend(piece.faces.iter().zip(sides).filter(|(_, sides)| bounds(*sides)).map(|(face, _)| *face));
             Ok(())
         })?;
         let mut used = faces.as_flattened().to_vec();
@@ -334,14 +368,24 @@ const OF_NETWORK: [Line; 10] = [
     Line::CapNormal,
 ];
 
-fn part_sum(mesh: &dyn MeshSource, piece: &TetPiece) -> io::Result<PartSum> {
+fn part_sum(
+    mesh: &dyn MeshSource,
+    piece: &TetPiece,
+    on_unnamed: &dyn Fn(u32) -> bool,
+    unnamed: &FxHashMap<[u32; 3], Unnamed>,
+) -> io::Result<PartSum> {
     let mut made = PartSum::default();
     let corners = mesh.corners_of(&piece.tets)?;
     for (i, (tet, corners)) in (0..).zip(piece.tets.iter().zip(&corners)) {
         let region = piece.blocks.get(i as usize).copied().unwrap_or(0);
         let sum = made.regions.entry(region).or_default();
-        for side in TET_FACES {
-            add(&mut sum.chain, side.map(|corner| tet[corner]), false);
+        for face in TET_FACES.map(|side| side.map(|corner| tet[corner])) {
+            add(&mut sum.chain, face, false);
+            if face.iter().all(|v| on_unnamed(*v))
+                && unnamed.get(&face_key(face)).is_some_and(|known| !same_turn(known.face, face))
+            {
+                made.beyond.push((face_key(face), region));
+            }
         }
         let [a, b, c, d] = corners.each_ref();
         sum.tets += 1;
@@ -361,68 +405,75 @@ fn part_sum(mesh: &dyn MeshSource, piece: &TetPiece) -> io::Result<PartSum> {
     Ok(made)
 }
 
-/// Components of consecutive regions, and of all together. Tetrahedra with a common point are connected.
+/// Components of regions, and of all together. Tetrahedra with a common point are connected. A region ends with the last of
+/// consecutive parts that have it.
 struct RegionSets {
-    sets: DisjointSets,
-    region: Option<i32>,
-    /// Points of the present region.
-    points: Vec<u32>,
-    is_in: Vec<bool>,
+    open: Vec<OpenRegion>,
     /// Component of an earlier region with each point.
     before: Vec<u32>,
     all: DisjointSets,
     found: FxHashMap<i32, usize>,
 }
 
+struct OpenRegion {
+    region: i32,
+    sets: DisjointSets,
+    is_in: Vec<bool>,
+}
+
 impl RegionSets {
     fn new(points: usize) -> Self {
-        Self {
-            sets: DisjointSets::new(points),
-            region: None,
-            points: Vec::new(),
-            is_in: vec![false; points],
-            before: vec![u32::MAX; points],
-            all: DisjointSets::new(0),
-            found: FxHashMap::default(),
-        }
+        let before = vec![u32::MAX; points];
+        Self { open: Vec::new(), before, all: DisjointSets::new(0), found: FxHashMap::default() }
     }
 
-    fn add(&mut self, region: i32, tets: &[[u32; 4]]) {
-        if self.region.is_some_and(|open| open != region) {
-            self.close();
+    /// Adds the tetrahedra of a part.
+    fn add(&mut self, tets: &[[u32; 4]], regions: &[i32]) {
+        if tets.is_empty() {
+            return;
         }
-        self.region = Some(region);
-        for &[a, b, c, d] in tets {
-            for v in [a, b, c, d] {
-                if !self.is_in[v as usize] {
-                    self.is_in[v as usize] = true;
-                    self.points.push(v);
+        let mut here = regions.to_vec();
+        here.sort_unstable();
+        here.dedup();
+        let (open, closed) = std::mem::take(&mut self.open).into_iter().partition(|open| here.contains(&open.region));
+        self.open = open;
+        self.close(closed);
+        for region in here {
+            if !self.open.iter().any(|open| open.region == region) {
+                let points = self.before.len();
+                self.open.push(OpenRegion { region, sets: DisjointSets::new(points), is_in: vec![false; points] });
+            }
+            let Some(OpenRegion { sets, is_in, .. }) = self.open.iter_mut().find(|open| open.region == region) else {
+                continue;
+            };
+            for (tet, _) in tets.iter().zip(regions).filter(|(_, of)| **of == region) {
+                for &v in tet {
+                    is_in[v as usize] = true;
+                    sets.join(tet[0], v);
                 }
-                self.sets.join(a, v);
             }
         }
     }
 
-    /// Ends a region.
-    fn close(&mut self) {
-        let Some(region) = self.region.take() else { return };
-        let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
-        for v in std::mem::take(&mut self.points) {
-            let root = self.sets.root(v);
-            let own = *numbers.entry(root).or_insert_with(|| self.all.push());
-            match self.before[v as usize] {
-                u32::MAX => {}
-                other => self.all.join(own, other),
+    /// Ends regions.
+    fn close(&mut self, regions: Vec<OpenRegion>) {
+        for OpenRegion { region, mut sets, is_in } in regions {
+            let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
+            for v in (0..).zip(is_in).filter(|(_, is_in)| *is_in).map(|(v, _)| v) {
+                let own = *numbers.entry(sets.root(v)).or_insert_with(|| self.all.push());
+                let before = &mut self.before[v as usize];
+                if *before != u32::MAX {
+                    self.all.join(own, *before);
+                }
+                *before = own;
             }
-            self.before[v as usize] = own;
-            self.is_in[v as usize] = false;
+            *self.found.entry(region).or_default() += numbers.len();
         }
-        *self.found.entry(region).or_default() += numbers.len();
-        self.sets = DisjointSets::new(self.before.len());
     }
 
     fn done(mut self) -> (FxHashMap<i32, usize>, usize) {
-        self.close();
+        let rest = std::mem::take(&mut self.open);
+        self.close(rest);
         let roots: FxHashSet<u32> = (0..self.all.len() as u32).map(|i| self.all.find(i)).collect();
         (self.found, roots.len())
     }

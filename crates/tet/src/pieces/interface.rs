@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Passes in which tetrahedra change sides.
 const PASSES: usize = 40;
 
-/// Passes in which they do so at sharp edges, too.
+/// Passes in which they do so at all sharp edges. After them, only the sharpest do.
 const SHARP_PASSES: usize = 20;
 
 /// Passes after which all tetrahedra at the ends of an edge change sides with those at the edge.
@@ -43,15 +43,14 @@ pub(super) struct Interface<'a> {
 }
 
 impl Interface<'_> {
-    /// Halves of the region. `None` if they are not closed, or if the interface comes near a triangle beyond the band.
-    pub fn cut(mut self) -> Option<Cut> {
+    /// Halves of the region. `None` if they are not closed, if the interface comes near a triangle beyond the band, or if faces
+    /// form smaller angles than `least` (radians).
+    pub fn cut(mut self, least: f64) -> Option<Cut> {
         for pass in 0..PASSES {
             let faces = self.faces();
             let around = self.around(&faces);
             let mut moves = Self::crowded(&around, pass);
-            if pass < SHARP_PASSES {
-                moves.extend(self.sharp(&around, pass));
-            }
+            moves.extend(self.sharp(&around, pass, if pass < SHARP_PASSES { SHARP } else { least }));
             if moves.is_empty() {
                 return self.is_clear(&faces).then(|| self.halves(&faces)).filter(Cut::is_closed);
             }
@@ -117,10 +116,10 @@ impl Interface<'_> {
 
     /// Edges at which two faces of a half form a small angle inside it. Their tetrahedra go to the other half and back to it
     /// in turn.
-    fn sharp(&self, around: &Around, pass: usize) -> Vec<([u32; 2], Side)> {
+    fn sharp(&self, around: &Around, pass: usize, below: f64) -> Vec<([u32; 2], Side)> {
         let sides = [Side::Below, Side::Above];
         let at_half = |(edge, faces, half): ([u32; 2], &Vec<[u32; 3]>, usize)| match faces[..] {
-            [f, g] if angle(&self.mesh.points, edge, f, g) < SHARP => Some((edge, sides[(half + 1 + pass) % 2])),
+            [f, g] if angle(&self.mesh.points, edge, f, g) < below => Some((edge, sides[(half + 1 + pass) % 2])),
             _ => None,
         };
         let each =
