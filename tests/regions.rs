@@ -1,8 +1,11 @@
 //! Regions around the lumen of a network, by the library.
 
-use anastomesh::check::{Expectation, check_tets};
-use anastomesh::domain::{Domain, DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueShape};
+use anastomesh::check::{CheckReport, Expectation, check_tets, check_volume};
+use anastomesh::domain::{
+    Domain, DomainInParts, DomainPlan, DomainPlanError, MemoryShelf, ShellPlan, Thickness, TissuePlan, TissueShape,
+};
 use anastomesh::mesh::adjacency::{boundary_faces, vertices_of};
+use anastomesh::mesh::source::gather;
 use anastomesh::mesh::{NamedRegion, TetMesh, VolumeMesh};
 use anastomesh::meshing::{MeshPlan, mesh_network};
 use anastomesh::skeleton::Skeleton;
@@ -69,6 +72,33 @@ fn wall_and_tissue_conform_to_the_lumen() {
     assert!(domain.check.is_valid(), "{:?}", domain.check.failed().collect::<Vec<_>>());
     let shells = domain.shells.expect("shells");
     assert!(shells.complete * 10 > shells.points * 9, "{shells:?}");
+}
+
+#[test]
+fn regions_in_parts_are_the_same_mesh() {
+    let (network, lumen) = fork();
+    let tissue = TissuePlan::new(TissueShape::Box { margin: Some(2.0) }).piece(3_000);
+    let shells = vec![wall(0.2), ShellPlan::new("annulus", Thickness::Law { length: 0.3, radii: 0.0 }).layers(1)];
+    let shelf = MemoryShelf::default();
+    let lumen_check = check_volume(&lumen, Some(&expected()));
+    for plan in [DomainPlan::default().shells(shells.clone()).tissue(tissue), DomainPlan::default().shells(shells)] {
+        let whole = Domain::around(lumen.clone(), &network, &plan, &expected(), &()).expect("made");
+        // The second time, pieces are found.
+        for _ in 0..2 {
+            let parts = DomainInParts::around(&lumen, &network, &plan, &lumen_check, &shelf, &()).expect("made");
+            assert_eq!(gather(&parts.mesh).expect("readable"), whole.mesh);
+            assert_eq!((&parts.regions, &parts.shells), (&whole.regions, &whole.shells));
+            assert_eq!(parts.check.failed().count(), 0);
+            assert!(parts.check.is_valid());
+            let [few, many] = [&parts.check, &whole.check];
+            assert_eq!(few.counts.components, many.counts.components);
+            assert_eq!(few.counts.boundary_components, many.counts.boundary_components);
+            let sizes = |check: &CheckReport| {
+                check.regions.iter().map(|r| (r.tets, r.components, r.boundary_faces)).collect::<Vec<_>>()
+            };
+            assert_eq!(sizes(few), sizes(many));
+        }
+    }
 }
 
 #[test]

@@ -20,9 +20,6 @@ use anastomesh_tet::{Interior, Obstacle, Shell, Shells, Sizing, TetError, Tetrah
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Maximum triangles around tissue that is filled as a whole.
-pub(super) const PIECE: usize = 50_000;
-
 /// Mesh with several regions.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -74,10 +71,12 @@ impl Domain {
         (shells.tets, shells.shell_of) = prisms.tets(0..prisms.len()).unzip();
         drop(prisms);
         let layout = Layout::new(&surface, &shells, around.as_ref())?;
-        let filler = plan.tissue.as_ref().map(TissuePlan::filler);
-        let watch = Watch::of(progress);
-        let fill = |filler| layout.outsides().map(|outside| fill(filler, outside, &watch)).collect();
-        let tissue: Vec<Tetrahedralization> = filler.as_ref().map_or(Ok(Vec::new()), fill)?;
+        let fill = |tissue: &TissuePlan| {
+            let (filler, watch) = (tissue.filler(), Watch::of(progress));
+            let fill = |outside| fill_in_pieces(&filler, outside, tissue.piece, &watch).map_err(DomainError::Tissue);
+            layout.outsides().map(fill).collect()
+        };
+        let tissue: Vec<Tetrahedralization> = plan.tissue.as_ref().map_or(Ok(Vec::new()), fill)?;
         let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);
         // The check needs about as much memory as they do.
         drop(layout);
@@ -202,9 +201,4 @@ impl TissuePlan {
         let filler = Tetrahedralizer::new().interior(Interior::Growing { growth: self.growth });
         self.size.map_or(filler.clone(), |size| filler.sizing(Sizing::Constant(size)))
     }
-}
-
-/// Fills a region of the tissue. The points of its mesh begin with those of the surface.
-fn fill(filler: &Tetrahedralizer, surface: &TriMesh, watch: &Watch) -> Result<Tetrahedralization, DomainError> {
-    fill_in_pieces(filler, surface, PIECE, watch).map_err(DomainError::Tissue)
 }

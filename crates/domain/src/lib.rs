@@ -49,7 +49,7 @@ pub use embed::{EmbedPlan, Embedding, Piece, PieceFault, Pieces, PiecesError};
 pub use error::{DomainError, GateFault};
 pub use parts::{DomainInParts, RegionParts};
 pub use plan::{DomainPlan, DomainPlanError, ShellPlan, Thickness, TissuePlan, TissueRegion, TissueShape};
-pub use shelf::Shelf;
+pub use shelf::{MemoryShelf, Shelf};
 
 /// The example of the README is a test.
 #[cfg(doctest)]

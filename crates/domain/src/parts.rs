@@ -3,17 +3,17 @@
 //! The lumen is read from its own mesh, tetrahedra of shells are made from their prisms when they are read, and those of the
 //! tissue are stored piece by piece.
 
-use super::build::{Grown, PIECE, ShellsReport};
+use super::build::{Grown, ShellsReport};
 use super::error::DomainError;
 use super::labels::{LUMEN_ID, Labelled, regions, tissue_id};
 use super::layout::Layout;
-use super::plan::DomainPlan;
-use super::shelf::{Filled, Shelf};
+use super::plan::{DomainPlan, TissuePlan};
+use super::shelf::{Filled, Shelf, key_of};
 use anastomesh_mesh::check::{CheckReport, check_regions_in_passes};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts, TetPiece};
-use anastomesh_mesh::{NamedRegion, Patch};
+use anastomesh_mesh::{NamedRegion, Patch, TriMesh};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::parts::{Piece, Pieces, Prisms, Watch, fill_spaced};
 use anastomesh_tet::{TetError, Tetrahedralizer};
@@ -63,15 +63,20 @@ pub struct RegionParts<'a> {
     counts: SourceCounts,
 }
 
-/// Filled piece of the tissue.
+/// Piece of the tissue.
 struct StoredPiece {
-    record: u64,
+    filled: Filled,
     /// Number in the mesh of each point of its surface.
     numbers: Vec<u32>,
     /// First of its other points.
     first: u32,
-    points: u32,
-    tets: usize,
+}
+
+impl StoredPiece {
+    /// Number after that of its last point.
+    fn end(&self) -> u32 {
+        self.first + self.filled.points
+    }
 }
 
 impl DomainPlan {
@@ -95,31 +100,22 @@ impl<'a> DomainInParts<'a> {
         shelf: &'a dyn Shelf,
         progress: &dyn Progress,
     ) -> Result<Self, DomainError> {
-        let Grown { surface, moved, shells, prisms, around, report, .. } = Grown::of(lumen, network, plan, progress)?;
+        let Grown { surface, moved, shells, prisms, around, report } = Grown::of(lumen, network, plan, progress)?;
         let of_lumen = lumen.counts();
-        let mut layout = Layout::new(&surface, &shells, around.as_ref())?;
-        let in_mesh = |layout: &Layout, v: u32| layout.in_mesh(of_lumen.points as u32, v);
-        let faces =
-            Labelled::of((lumen.patches().to_vec(), Vec::new(), Vec::new()), &layout, plan, &|v| in_mesh(&layout, v));
-        let mut around_points: Vec<Point3> =
-            around.iter().flat_map(|around| &around.surfaces).flat_map(|surface| &surface.points).copied().collect();
+        let layout = Layout::new(&surface, &shells, around.as_ref())?;
+        let in_mesh = |v: u32| layout.in_mesh(of_lumen.points as u32, v);
+        let of_patches = (lumen.patches().to_vec(), Vec::new(), Vec::new());
+        let faces = Labelled::of(of_patches, &layout, plan, &in_mesh);
+        let of_organ = around.iter().flat_map(|around| &around.surfaces).flat_map(|surface| &surface.points);
+        let mut around_points: Vec<Point3> = of_organ.copied().collect();
         let mut pieces = Vec::new();
-        let outside = layout.outsides.pop();
-        if let (Some(tissue), Some(outside)) = (&plan.tissue, outside) {
-            let filler = tissue.filler();
-            let numbers: Vec<u32> = outside.numbers.iter().map(|&v| in_mesh(&layout, v)).collect();
-            let (boundary, text) = (
-                outside.boundary,
-                format!("{tissue_growth:?} {tissue_size:?}", tissue_growth = tissue.growth, tissue_size = tissue.size),
-            );
+        if let (Some(plan), Some(outside)) = (&plan.tissue, layout.outsides.first()) {
             let first = (of_lumen.points + shells.points.len() + around_points.len()) as u32;
-            let made = Tissue { filler: &filler, text: &text, shelf, progress }.fill(
-                &boundary,
-                numbers,
-                first,
-                &mut around_points,
-            )?;
-            pieces = made;
+            let numbers: Vec<u32> = outside.numbers.iter().map(|&v| in_mesh(v)).collect();
+            let tissue = Tissue { plan, filler: plan.filler(), shelf, progress };
+            let interfaces;
+            (interfaces, pieces) = tissue.fill(&outside.boundary, &numbers, first)?;
+            around_points.extend(interfaces);
         }
         drop(layout);
         let mut mesh = RegionParts {
@@ -148,64 +144,57 @@ impl<'a> DomainInParts<'a> {
 
 /// Filling of the tissue.
 struct Tissue<'a> {
-    filler: &'a Tetrahedralizer,
-    /// Options that the result depends on.
-    text: &'a str,
+    plan: &'a TissuePlan,
+    filler: Tetrahedralizer,
     shelf: &'a dyn Shelf,
     progress: &'a dyn Progress,
 }
 
 impl Tissue<'_> {
-    /// Divides the tissue into pieces and fills them. The points of interfaces have numbers from `first` on, and are added to
-    /// `added`; those of pieces follow.
+    /// Divides the tissue into pieces and fills them. Returns the points of interfaces, which have numbers from `first` on, and
+    /// the pieces, whose own points follow.
     fn fill(
         &self,
-        boundary: &anastomesh_mesh::TriMesh,
-        numbers: Vec<u32>,
+        boundary: &TriMesh,
+        numbers: &[u32],
         first: u32,
-        added: &mut Vec<Point3>,
-    ) -> Result<Vec<StoredPiece>, DomainError> {
-        let watch = Watch::asking(self.progress);
+    ) -> Result<(Vec<Point3>, Vec<StoredPiece>), DomainError> {
         self.progress.at(Stage::Tissue, 0, 0);
-        let Pieces { points, pieces, .. } =
-            Pieces::of(self.filler, boundary, PIECE, &watch).map_err(DomainError::Tissue)?;
-        let given = numbers.len();
-        let in_mesh = |v: u32| numbers.get(v as usize).copied().unwrap_or_else(|| first + v - given as u32);
-        added.extend_from_slice(&points[given..]);
-        let mut next = u64::from(first) + (points.len() - given) as u64;
-        drop(points);
-        let (done, total) = (AtomicUsize::new(0), pieces.len());
+        let watch = Watch::asking(self.progress);
+        let Pieces { mut points, pieces, .. } =
+            Pieces::of(&self.filler, boundary, self.plan.piece, &watch).map_err(DomainError::Tissue)?;
+        let interfaces = points.split_off(numbers.len());
+        let given = numbers.len() as u32;
+        let in_mesh = |v: u32| numbers.get(v as usize).copied().unwrap_or_else(|| first + v - given);
+        let (done, total) = (AtomicUsize::new(0), pieces.len() as u64);
         let fill = |piece: Piece| {
-            let found = self.stored(&piece, &watch)?;
-            self.progress.at(Stage::Tissue, done.fetch_add(1, Ordering::Relaxed) as u64 + 1, total as u64);
-            Ok((piece.numbers, found))
+            let filled = self.filled(&piece, &watch)?;
+            self.progress.at(Stage::Tissue, done.fetch_add(1, Ordering::Relaxed) as u64 + 1, total);
+            Ok((piece.numbers.into_iter().map(in_mesh).collect(), filled))
         };
-        let filled: Vec<(Vec<u32>, (u64, u32, usize))> =
-            pieces.into_par_iter().map(fill).collect::<Result<_, DomainError>>()?;
+        let filled: Vec<(Vec<u32>, Filled)> = pieces.into_par_iter().map(fill).collect::<Result<_, DomainError>>()?;
+        let mut next = u64::from(first) + interfaces.len() as u64;
         let mut stored = Vec::with_capacity(filled.len());
-        for (own, (record, points, tets)) in filled {
-            let numbers = own.into_iter().map(in_mesh).collect();
-            stored.push(StoredPiece { record, numbers, first: next as u32, points, tets });
-            next += u64::from(points);
+        for (numbers, filled) in filled {
+            stored.push(StoredPiece { filled, numbers, first: next as u32 });
+            next += u64::from(filled.points);
         }
         if next > u64::from(u32::MAX) {
-            let estimate = next as usize;
-            return Err(DomainError::Tissue(TetError::TooMany { estimate, limit: u32::MAX as usize }));
+            let (estimate, limit) = (next as usize, u32::MAX as usize);
+            return Err(DomainError::Tissue(TetError::TooMany { estimate, limit }));
         }
-        Ok(stored)
+        Ok((interfaces, stored))
     }
 
-    /// Record of a filled piece, with the number of its own points and of its tetrahedra.
-    fn stored(&self, piece: &Piece, watch: &Watch) -> Result<(u64, u32, usize), DomainError> {
-        let key = self.shelf.key(self.text, &piece.surface);
-        let given = piece.numbers.len();
-        if let Some(record) = self.shelf.find(key) {
-            let counts = Filled::counts(&self.shelf.read(record, 0..Filled::HEAD)?)?;
-            return Ok((record, counts[0], counts[1] as usize));
+    /// Fills a piece, unless the shelf has it.
+    fn filled(&self, piece: &Piece, watch: &Watch) -> Result<Filled, DomainError> {
+        let TissuePlan { size, growth, .. } = self.plan;
+        let key = key_of(&format!("{size:?} {growth:?}"), &piece.surface);
+        if let Some(found) = Filled::find(self.shelf, key)? {
+            return Ok(found);
         }
-        let mesh = fill_spaced(self.filler, &piece.surface, watch).map_err(DomainError::Tissue)?.mesh;
-        let record = self.shelf.keep(key, Filled::bytes(&mesh.points[given..], &mesh.tets))?;
-        Ok((record, (mesh.points.len() - given) as u32, mesh.tets.len()))
+        let mesh = fill_spaced(&self.filler, &piece.surface, watch).map_err(DomainError::Tissue)?.mesh;
+        Ok(Filled::keep(self.shelf, key, &mesh.points[piece.numbers.len()..], &mesh.tets)?)
     }
 }
 
@@ -219,8 +208,8 @@ impl RegionParts<'_> {
                 first += self.lumen.points(part)?.len() as u32;
             }
         }
-        let own: usize = self.pieces.iter().map(|piece| piece.points as usize).sum();
-        let tets: usize = self.pieces.iter().map(|piece| piece.tets).sum();
+        let own: usize = self.pieces.iter().map(|piece| piece.filled.points as usize).sum();
+        let tets: usize = self.pieces.iter().map(|piece| piece.filled.tets as usize).sum();
         self.counts = SourceCounts {
             points: self.of_lumen.points + self.shells.len() + self.around.len() + own,
             tets: self.of_lumen.tets + self.prisms.len() * self.prisms.tets_per_triangle() + tets,
@@ -303,10 +292,7 @@ impl MeshSource for RegionParts<'_> {
             }
             Kind::Shells(i) => Ok((&self.shells[self.share(i, self.shells.len())]).into()),
             Kind::Around => Ok((&self.around[..]).into()),
-            Kind::Tissue(piece) => {
-                let end = Filled::HEAD + Filled::POINT * u64::from(piece.points);
-                Ok(Filled::points(&self.shelf.read(piece.record, Filled::HEAD..end)?).into())
-            }
+            Kind::Tissue(piece) => Ok(piece.filled.points(self.shelf)?.into()),
         }
     }
 
@@ -323,12 +309,9 @@ impl MeshSource for RegionParts<'_> {
             }
             Kind::Around => (Vec::new(), Vec::new()),
             Kind::Tissue(piece) => {
-                let first = Filled::HEAD + Filled::POINT * u64::from(piece.points);
-                let end = first + Filled::TET * piece.tets as u64;
                 let given = piece.numbers.len() as u32;
                 let number = |v: u32| piece.numbers.get(v as usize).copied().unwrap_or_else(|| piece.first + v - given);
-                let mut tets = Filled::tets(&self.shelf.read(piece.record, first..end)?);
-                tets.as_flattened_mut().iter_mut().for_each(|v| *v = number(*v));
+                let tets: Vec<[u32; 4]> = piece.filled.tets(self.shelf)?.into_iter().map(|t| t.map(number)).collect();
                 let count = tets.len();
                 (tets, vec![self.tissue; count])
             }
@@ -363,14 +346,14 @@ impl MeshSource for RegionParts<'_> {
         found.extend(ids[b..c].iter().map(|id| self.around[(id - of_around) as usize]));
         let mut rest = &ids[c..];
         while let Some(&id) = rest.first() {
-            let piece = &self.pieces[self.pieces.partition_point(|piece| piece.first <= id).saturating_sub(1)];
-            let (here, others) = rest.split_at(rest.partition_point(|&id| id < piece.first + piece.points));
-            if here.is_empty() {
-                return Err(io::ErrorKind::InvalidInput.into());
+            let place = self.pieces.partition_point(|piece| piece.end() <= id);
+            let piece = self.pieces.get(place).ok_or(io::ErrorKind::InvalidInput)?;
+            let (here, others) = rest.split_at(rest.partition_point(|&id| id < piece.end()));
+            let points = piece.filled.points(self.shelf)?;
+            let at = |id: &u32| points.get((id - piece.first) as usize).copied().ok_or(io::ErrorKind::InvalidData);
+            for id in here {
+                found.push(at(id)?);
             }
-            let end = Filled::HEAD + Filled::POINT * u64::from(piece.points);
-            let points = Filled::points(&self.shelf.read(piece.record, Filled::HEAD..end)?);
-            found.extend(here.iter().map(|id| points[(id - piece.first) as usize]));
             rest = others;
         }
         Ok(found)

@@ -145,6 +145,9 @@ pub struct TissuePlan {
     /// Terminals, as nodes of the network that was read, at which vessels leave the organ; see
     /// [`CutNetwork`](super::CutNetwork). Its surface is opened there.
     pub gates: Vec<u32>,
+    /// Maximum triangles around tissue that is filled as a whole. Larger regions are divided into pieces, which are filled at the
+    /// same time.
+    pub piece: usize,
 }
 
 anastomesh_mesh::setters!(TissuePlan {
@@ -154,16 +157,28 @@ anastomesh_mesh::setters!(TissuePlan {
     size: impl Into<Option<f64>>,
     growth: f64,
     gates: Vec<u32>,
+    piece: usize,
 });
 
 impl TissuePlan {
     /// Default of `growth`.
     pub const GROWTH: f64 = 1.3;
+    /// Default of `piece`.
+    pub const PIECE: usize = 50_000;
 
     /// Tissue of this shape.
     pub fn new(shape: TissueShape) -> Self {
         let (regions, gates) = (Vec::new(), Vec::new());
-        Self { shape, regions, remesh: false, tolerance: None, size: None, growth: Self::GROWTH, gates }
+        Self {
+            shape,
+            regions,
+            remesh: false,
+            tolerance: None,
+            size: None,
+            growth: Self::GROWTH,
+            gates,
+            piece: Self::PIECE,
+        }
     }
 }
 

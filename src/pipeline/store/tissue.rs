@@ -4,21 +4,11 @@ use std::io;
 use std::ops::Range;
 
 use anastomesh_domain::Shelf;
-use anastomesh_mesh::TriMesh;
 
-use super::{Key, KeyMaker, RecordId, Store};
+use super::{Key, RecordId, Store};
 use crate::block::Bytes;
 
 impl Shelf for Store {
-    fn key(&self, text: &str, surface: &TriMesh) -> u128 {
-        let mut maker = KeyMaker::new("tissue");
-        maker.text(text);
-        maker.count(surface.points.len());
-        surface.points.iter().for_each(|p| maker.point(p));
-        surface.triangles.as_flattened().iter().for_each(|&v| maker.id(v));
-        maker.finish().0
-    }
-
     fn find(&self, key: u128) -> Option<u64> {
         Self::find(self, Key(key)).map(|record| record.index() as u64)
     }
