@@ -47,7 +47,17 @@ pub struct Opening {
 impl Gate {
     /// Ends of vessels at given places. `thickness` is that of all shells at each point of the lumen's surface.
     pub fn find(lumen: &LumenSurface, thickness: &[f64], places: &[Point3]) -> Result<Vec<Self>, DomainError> {
-        let mut all: Vec<Self> = (0..lumen.patches.len() as u32).map(|cap| Self::of(cap, lumen, thickness)).collect();
+        if places.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut of_caps: Vec<Vec<[u32; 3]>> = vec![Vec::new(); lumen.patches.len()];
+        for (t, cap) in lumen.surface.triangles.iter().zip(&lumen.caps) {
+            if let Some(cap) = cap {
+                of_caps[*cap as usize].push(*t);
+            }
+        }
+        let of_cap = |(cap, own): (u32, Vec<[u32; 3]>)| Self::of(cap, &own, &lumen.surface.points, thickness);
+        let mut all: Vec<Self> = (0..).zip(of_caps).map(of_cap).collect();
         let mut found = Vec::new();
         for place in places {
             let near = |gate: &Self| (gate.center - place).norm() / gate.radius;
@@ -61,20 +71,19 @@ impl Gate {
         Ok(found)
     }
 
-    fn of(cap: u32, lumen: &LumenSurface, thickness: &[f64]) -> Self {
-        let LumenSurface { surface, caps, .. } = lumen;
-        let own = || surface.triangles.iter().zip(caps).filter(|(_, c)| **c == Some(cap)).map(|(t, _)| t);
+    /// End with these triangles.
+    fn of(cap: u32, own: &[[u32; 3]], points: &[Point3], thickness: &[f64]) -> Self {
         let (mut normal, mut moment, mut area) = (Vec3::zeros(), Vec3::zeros(), 0.0);
-        for t in own() {
-            let [a, b, c] = t.map(|v| surface.points[v as usize]);
+        for t in own {
+            let [a, b, c] = t.map(|v| points[v as usize]);
             let twice = (b - a).cross(&(c - a));
             normal += twice;
             area += twice.norm();
             moment += (a.coords + b.coords + c.coords) * (twice.norm() / 3.0);
         }
         let center = Point3::from(moment / area);
-        let reach = |&v: &u32| (surface.points[v as usize] - center).norm() + thickness[v as usize];
-        let radius = own().flatten().map(reach).fold(0.0, f64::max);
+        let reach = |&v: &u32| (points[v as usize] - center).norm() + thickness[v as usize];
+        let radius = own.as_flattened().iter().map(reach).fold(0.0, f64::max);
         Self { cap, center, normal: normal.normalize(), radius }
     }
 
