@@ -1,7 +1,7 @@
 //! Large meshes with regions in parts, most of which are stored.
 //!
-//! The lumen is read from its own mesh, tetrahedra of shells are made from their prisms when they are read, and those of the
-//! tissue are stored piece by piece.
+//! The lumen is read from its own mesh. Tetrahedra of shells are made from their prisms when they are read. Those of the tissue
+//! are stored piece by piece.
 
 use super::build::{Grown, ShellsReport};
 use super::error::DomainError;

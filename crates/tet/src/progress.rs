@@ -27,7 +27,7 @@ impl<'a> Watch<'a> {
         Self { who: Some(who), is_told: false, budget: None }
     }
 
-    /// The same watch without reports.
+    /// Asks for cancellation like this watch, without reports.
     #[must_use]
     pub fn silent(&self) -> Self {
         Self { is_told: false, ..*self }

@@ -8,10 +8,10 @@
 //! 2. For every region, the faces of its tetrahedra, with their orientation, add up to its labelled faces: outer faces, and
 //!    interfaces from their own side. Faces of opposite orientation cancel. The sums are those of two 64-bit hashes of the
 //!    vertices, so that a difference is missed with a probability of 2^-128.
-//! 3. For every region, the boundary of it and of all regions with a smaller id together is a closed 2-manifold without
-//!    self-intersections, and none of its surfaces lies inside another with the same orientation.
+//! 3. Take a region together with all regions that have a smaller id. Their common boundary is a closed 2-manifold without
+//!    self-intersections, and none of its surfaces lies inside another with the same orientation. This holds for every region.
 //!
-//! By 2 and 3, the winding number of the boundary of these regions together is 0 or 1 everywhere, and by 1 it is the number of their
+//! By 2 and 3, the winding number of the boundary of these regions together is 0 or 1 everywhere. By 1, it is the number of their
 //! tetrahedra at a place. So no tetrahedra overlap, no face has more than two, and those of two are on opposite sides. Equal points
 //! would be in overlapping tetrahedra, or on a boundary that intersects itself.
 //!

@@ -15,6 +15,8 @@ fn failed(report: &CheckReport) -> Vec<Line> {
     report.failed().map(|line| line.line).collect()
 }
 
+type Change = fn(&mut VolumeMesh);
+
 #[test]
 fn a_sound_mesh_gets_the_same_report() {
     let [whole, passes] = both(|_| ());
@@ -38,7 +40,7 @@ fn a_sound_mesh_gets_the_same_report() {
 
 #[test]
 fn faults_are_found() {
-    let changes: [(&str, fn(&mut VolumeMesh)); 8] = [
+    let changes: [(&str, Change); 8] = [
         ("inverted", |v| v.mesh.tets[3].swap(0, 1)),
         ("missing", |v| {
             v.mesh.tets.pop();
@@ -68,7 +70,7 @@ fn faults_are_found() {
 #[test]
 fn overlapping_regions_are_found() {
     let [whole, passes] = both(|volume| {
-        // A second copy of the mesh at nearly the same place: each is sound by itself.
+        // A second copy of the mesh at nearly the same place: each alone is sound.
         let n = volume.mesh.points.len() as u32;
         let moved: Vec<Point3> = volume.mesh.points.iter().map(|p| p + crate::geometry::Vec3::repeat(1e-3)).collect();
         volume.mesh.points.extend(moved);

@@ -107,7 +107,7 @@ impl Interface<'_> {
         around
     }
 
-    /// Edges at which a half meets itself. Their tetrahedra go to either side in turn.
+    /// Edges at which a half has more than two faces. Their tetrahedra go to either side in turn.
     fn crowded(around: &Around, pass: usize) -> Vec<([u32; 2], Side)> {
         let side = if pass.is_multiple_of(2) { Side::Below } else { Side::Above };
         let is_crowded = |at: &[Vec<[u32; 3]>; 2]| at.iter().any(|faces| faces.len() > 2);

@@ -25,9 +25,9 @@ use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
-use settle::{Given, Settled, settle};
+use settle::{Settled, settle};
 pub use shell::Shell;
-use shell::{first_layers, of_caps};
+use shell::{Given, first_layers, of_caps};
 use std::ops::Range;
 
 /// Fraction of the thickness asked for below which shells count as thin.

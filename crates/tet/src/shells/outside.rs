@@ -1,7 +1,6 @@
 //! Self-intersections of the closed surface around shells.
 
-use super::settle::Given;
-use super::shell::of_caps;
+use super::shell::{Given, of_caps};
 use crate::error::TetError;
 use crate::layers::Numbers;
 use crate::progress::Watch;
@@ -83,7 +82,7 @@ impl<'a> Outside<'a> {
                     if j > i {
                         found.push(j);
                     }
-                })
+                });
             },
             watch,
         )?;

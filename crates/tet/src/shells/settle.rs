@@ -4,7 +4,7 @@ use super::directions::directions;
 use super::heights::heights;
 use super::improve::Improver;
 use super::outside::Outside;
-use super::shell::{Shell, depths};
+use super::shell::{Given, Shell, depths};
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::layers::{Numbers, Places, Stack, Ways, rims, toward};
 use crate::progress::Watch;
@@ -20,17 +20,6 @@ const FACTORS: [f64; 2] = [0.7, 0.4];
 const LEAST: f64 = 1e-3;
 /// Passes with the first factor.
 const PATIENT: usize = 8;
-
-/// Surface with its wall and the shells wanted.
-#[derive(Clone, Copy)]
-pub(super) struct Given<'a> {
-    pub surface: &'a TriMesh,
-    /// Triangles of the wall, seen from inside.
-    pub wall: &'a [[u32; 3]],
-    pub caps: &'a [Option<u32>],
-    pub shells: &'a [Shell],
-    pub around: Option<&'a TriMesh>,
-}
 
 /// Shells with their final positions.
 pub(super) struct Settled<'a> {

@@ -36,6 +36,17 @@ impl Shell {
     }
 }
 
+/// Surface with its wall and the shells wanted.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'a> {
+    pub surface: &'a TriMesh,
+    /// Triangles of the wall, seen from inside.
+    pub wall: &'a [[u32; 3]],
+    pub caps: &'a [Option<u32>],
+    pub shells: &'a [Shell],
+    pub around: Option<&'a TriMesh>,
+}
+
 /// Fraction of the distance to the outer position at which each copy of a point lies, shell by shell.
 pub(super) fn depths(shells: &[Shell], v: usize) -> Vec<f64> {
     let total: f64 = shells.iter().map(|shell| shell.thickness[v]).sum();
