@@ -41,6 +41,9 @@ impl Way {
     }
 }
 
+/// Maximum distance of the start of a straight run from where it would be, in lengths of the run: it moves to a node.
+const SNAP: f64 = 0.25;
+
 /// Courses of all branches, each built on access.
 #[derive(Clone, Copy)]
 pub struct Courses<'a> {
@@ -197,7 +200,25 @@ impl Course {
         let after = arc.partition_point(|&x| x < target).min(arc.len() - 1);
         let before = after.saturating_sub(1);
         let nearest = if arc[after] - target < target - arc[before] { arc[after] } else { arc[before] };
-        if (nearest - target).abs() <= 0.25 * run { nearest } else { target }
+        if (nearest - target).abs() <= SNAP * run { nearest } else { target }
+    }
+
+    /// Minimum distance of a plane from the end that the branch leaves by `way`, so that the straight runs before both do not
+    /// overlap.
+    pub(crate) fn clear_of_runs(&self, way: Way) -> f64 {
+        let distance = |s: f64| if way == Way::Onward { s } else { self.length() - s };
+        let at_end = self.radius(if way == Way::Onward { 0.0 } else { self.length() }, way);
+        let mut clear = 0.0_f64;
+        for (s, radii) in self.arc().windows(2).zip(&self.radii) {
+            let [a, b] = [0, 1].map(|i| distance(s[i]));
+            let [over_a, over_b] = [(a, radii[0]), (b, radii[1])].map(|(d, r)| (1.0 + SNAP) * (r + at_end) - d);
+            if over_a > 0.0 || over_b > 0.0 {
+                // The overlap is linear along an edge.
+                let zero = a + (b - a) * over_a / (over_a - over_b);
+                clear = clear.max(if over_a > 0.0 && over_b > 0.0 { a.max(b) } else { zero });
+            }
+        }
+        clear
     }
 
     /// Unit direction of the vessel at a plane at `s`, pointing `way`.

@@ -204,7 +204,8 @@ impl<'a> Cuttability<'a> {
         let node = self.courses.chains.ends(branch)[way.side()];
         let radius = self.courses.skeleton.node(node).radius;
         if BranchEnd::of(self.adjacency, node) == BranchEnd::Terminal {
-            return [TERMINAL_KEEPS * radius, 0.0];
+            let runs = self.courses.get(branch).clear_of_runs(way);
+            return [runs.max(TERMINAL_KEEPS * radius), 0.0];
         }
         let around = &self.leaving[self.first[node.index()] as usize..self.first[node.index() + 1] as usize];
         let Some(own) = around.iter().find(|l| l.branch == branch && l.way == way) else {
