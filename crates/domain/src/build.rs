@@ -124,7 +124,9 @@ impl Grown {
         };
         let around = plan.tissue.as_ref().map(surround).transpose()?;
         let obstacles = around.as_ref().map(Surroundings::joined);
-        let (shells, prisms) = shells(&surface, &sites, &plan.shells, obstacles.as_ref(), progress)?;
+        let wanted: Vec<Shell> = plan.shells.iter().map(|shell| shell.at(&sites)).collect();
+        drop((sites, thickness));
+        let (shells, prisms) = shells(&surface, &plan.shells, &wanted, obstacles.as_ref(), progress)?;
         let report =
             (!plan.shells.is_empty()).then(|| ShellsReport { moved: moved.len(), ..report(&shells, &surface) });
         Ok(Self { surface, moved, shells, prisms, around, report })
@@ -135,6 +137,14 @@ impl DomainPlan {
     /// Thickness of all shells together at a place.
     pub(super) fn thickness(&self, site: &Site) -> f64 {
         self.shells.iter().map(|shell| shell.thickness.at(site)).sum()
+    }
+}
+
+impl ShellPlan {
+    /// Shell with its thickness at each of these places.
+    fn at(&self, sites: &[Site]) -> Shell {
+        let thickness = sites.iter().map(|site| self.thickness.at(site)).collect();
+        Shell::new(thickness).layers(self.layers).growth(self.growth)
     }
 }
 
@@ -153,20 +163,15 @@ fn sites(surface: &TriMesh, network: &Skeleton) -> Vec<Site> {
 
 fn shells(
     lumen: &LumenSurface,
-    sites: &[Site],
     plans: &[ShellPlan],
+    wanted: &[Shell],
     around: Option<&TriMesh>,
     progress: &dyn Progress,
 ) -> Result<(Shells, Prisms), DomainError> {
     if plans.is_empty() {
         return Ok(Default::default());
     }
-    let shell = |plan: &ShellPlan| {
-        let thickness = sites.iter().map(|site| plan.thickness.at(site)).collect();
-        Shell::new(thickness).layers(plan.layers).growth(plan.growth)
-    };
-    let wanted: Vec<Shell> = plans.iter().map(shell).collect();
-    Shells::grown(&lumen.surface, &lumen.caps, &wanted, around, progress).map_err(|source| {
+    Shells::grown(&lumen.surface, &lumen.caps, wanted, around, progress).map_err(|source| {
         let v = match &source {
             TetError::Stuck {
                 part: Obstacle::Triangle([v, ..]) | Obstacle::Edge([v, _]) | Obstacle::Point(v), ..

@@ -8,7 +8,7 @@ use anastomesh_mesh::adjacency::Incidence;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::source::MeshSource;
-use anastomesh_tet::parts::openness;
+use anastomesh_tet::parts::{is_open, openness};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -131,15 +131,20 @@ impl Wall {
     }
 
     fn folded(&self, vertices: &[u32]) -> Vec<u32> {
-        vertices.par_iter().copied().filter(|&v| self.openness(v) < FOLDED).collect()
+        vertices.par_iter().copied().filter(|&v| !is_open(&self.normals(v), FOLDED)).collect()
     }
 
     fn openness(&self, v: u32) -> f64 {
+        openness(&self.normals(v))
+    }
+
+    /// Normals of the triangles at a vertex, into the lumen.
+    fn normals(&self, v: u32) -> Vec<Vec3> {
         let inward = |&t: &u32| {
             let [a, b, c] = self.triangles[t as usize].map(|v| self.points[v as usize]);
             -(b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
         };
-        openness(&self.at_vertex.get(v).iter().map(inward).collect::<Vec<Vec3>>())
+        self.at_vertex.get(v).iter().map(inward).collect()
     }
 
     /// Openness that a vertex and those around it lack, in sum.

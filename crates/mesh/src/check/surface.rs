@@ -123,7 +123,7 @@ impl<'a> Boundary<'a> {
     /// Finds faces that intersect improperly. If the boundary is closed and no faces intersect, finds nested surfaces.
     pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
         let mut tally = Tally::new(Line::NoSelfIntersection);
-        let contacts = contacts_with(self.points, self.faces, &self.fans);
+        let contacts = contacts_with(self.points, self.faces, &self.fans, &|| false);
         let mut intersections = Vec::with_capacity(contacts.len());
         for (i, j, kind) in contacts {
             let faces = [self.faces[i as usize], self.faces[j as usize]];

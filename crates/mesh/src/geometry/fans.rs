@@ -5,6 +5,7 @@
 //! nothing.
 
 use super::{Point3, Vec3};
+use rayon::prelude::*;
 
 /// Relative error bound of a cross product of images, and an absolute bound against underflow. The margin is wide:
 /// errors are below 30 units of 1.1e-16.
@@ -13,6 +14,9 @@ const ABSOLUTE: f64 = 1e-280;
 
 /// Maximum triangles at one vertex; larger fans are left to other tests.
 const MOST: usize = 16;
+
+/// Minimum vertices per thread. Small surfaces are examined without the thread pool, which could start unrelated work.
+const SHARE: usize = 1 << 14;
 
 /// Triangles around the vertices of a surface.
 pub(crate) struct Fans {
@@ -45,18 +49,18 @@ impl Fans {
             *slot += 1;
         }
         // Filling moved each offset to the start of the next vertex.
-        let mut fans = Self { corners, ends, proved: vec![false; points.len()], is_manifold: true };
-        let mut fan = Vec::new();
-        for (v, p) in points.iter().enumerate() {
-            let corners = fans.at(v);
-            if !corners.is_empty() {
-                fan.clear();
-                fan.extend(corners.iter().map(|&corner| neighbors(triangles, corner)));
-                let is_closed = sort_around(&mut fan);
-                fans.proved[v] = is_closed && turns_once(points, p, &fan);
-                fans.is_manifold &= fans.proved[v] || (is_closed && is_simple(v as u32, &fan));
-            }
-        }
+        let mut fans = Self { corners, ends, proved: Vec::new(), is_manifold: true };
+        let examine = |fan: &mut Vec<[u32; 2]>, (v, p): (usize, &Point3)| {
+            fan.clear();
+            fan.extend(fans.at(v).iter().map(|&corner| neighbors(triangles, corner)));
+            let is_closed = sort_around(fan);
+            let is_proved = is_closed && turns_once(points, p, fan);
+            (is_proved, is_proved || fan.is_empty() || (is_closed && is_simple(v as u32, fan)))
+        };
+        let all = points.par_iter().enumerate().with_min_len(SHARE);
+        let (proved, manifold): (Vec<bool>, Vec<bool>) = all.map_init(Vec::new, examine).unzip();
+        fans.is_manifold = manifold.into_iter().all(|is_manifold| is_manifold);
+        fans.proved = proved;
         fans
     }
 
@@ -74,7 +78,9 @@ impl Fans {
         for (v, _) in self.proved.iter().enumerate().filter(|(_, proved)| **proved) {
             let around = self.at(v).iter().map(|corner| corner / 3);
             triangles.extend(around.filter(|&t| !std::mem::replace(&mut is_taken[t as usize], true)));
-            ends.push(triangles.len() as u32);
+            if ends.last().copied().unwrap_or(0) < triangles.len() as u32 {
+                ends.push(triangles.len() as u32);
+            }
         }
         for (t, _) in (0..).zip(is_taken).filter(|(_, taken)| !taken) {
             triangles.push(t);

@@ -33,7 +33,9 @@ pub use place::place_key;
 pub use ray::crossing;
 pub use total::Total;
 pub(crate) use tri_tri::contacts_with;
-pub use tri_tri::{Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_intersections};
+pub use tri_tri::{
+    Contact, Improper, Triangle, classify, classify_triangles, self_contacts, self_contacts_until, self_intersections,
+};
 pub use tube::{Section, Tube};
 
 /// Point in space, in the unit of the network.

@@ -300,32 +300,45 @@ pub fn self_intersections(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32
 
 /// As `self_intersections`, with the kind of each.
 pub fn self_contacts(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, Improper)> {
-    contacts_with(points, triangles, &Fans::of(points, triangles))
+    contacts_with(points, triangles, &Fans::of(points, triangles), &|| false)
 }
 
-/// As `self_contacts`, with the known fans of the triangles.
-pub(crate) fn contacts_with(points: &[Point3], triangles: &[[u32; 3]], fans: &Fans) -> Vec<(u32, u32, Improper)> {
+/// As `self_contacts`, until `is_stopped` returns true. The contacts found until then are some of all.
+pub fn self_contacts_until(
+    points: &[Point3],
+    triangles: &[[u32; 3]],
+    is_stopped: &dyn Fn() -> bool,
+) -> Vec<(u32, u32, Improper)> {
+    contacts_with(points, triangles, &Fans::of(points, triangles), is_stopped)
+}
+
+/// As `self_contacts_until`, with the known fans of the triangles.
+pub(crate) fn contacts_with(
+    points: &[Point3],
+    triangles: &[[u32; 3]],
+    fans: &Fans,
+    is_stopped: &dyn Fn() -> bool,
+) -> Vec<(u32, u32, Improper)> {
     let mut found: Vec<(u32, u32, Improper)> = Vec::new();
     // On a smooth surface nearly all vertices are proved, and neighbours there need no test: the tree has one box for the
     // triangles of such a vertex. Boxes are in the order of `grouped`.
     let (grouped, ends) = fans.groups();
     let proved_or_none = |v: u32| if fans.proved[v as usize] { v } else { u32::MAX };
-    let mut boxes = Vec::with_capacity(triangles.len());
-    for &t in &grouped {
+    let boxed = |&t: &u32| {
         let known = triangles[t as usize].map(proved_or_none);
         let [a, b, c] = triangles[t as usize].map(|v| &points[v as usize]);
-        if known == [u32::MAX; 3] && collinear(a, b, c) {
-            found.push((t, t, Improper::Degenerate));
-            boxes.push((Aabb::EMPTY, known, t));
-        } else {
-            boxes.push((Aabb::of_points([a, b, c]), known, t));
-        }
-    }
+        let is_degenerate = known == [u32::MAX; 3] && collinear(a, b, c);
+        (if is_degenerate { Aabb::EMPTY } else { Aabb::of_points([a, b, c]) }, known, t)
+    };
+    let boxes: Vec<(Aabb, [u32; 3], u32)> = grouped.par_iter().with_min_len(BATCH).map(boxed).collect();
+    let degenerate = boxes.iter().filter(|(aabb, ..)| aabb.min.x > aabb.max.x);
+    found.extend(degenerate.map(|&(.., t)| (t, t, Improper::Degenerate)));
     let start = |group: u32| if group == 0 { 0 } else { ends[group as usize - 1] as usize };
     let group = |group: u32| &boxes[start(group)..ends[group as usize] as usize];
     let hull = |i: u32| group(i).iter().fold(Aabb::EMPTY, |sum, (aabb, ..)| sum.union(aabb));
     let hulls: Vec<Aabb> = (0..ends.len() as u32).map(hull).collect();
     let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
+    let mut is_over = false;
     Bvh::new(&hulls).self_pairs(|p, q| {
         for (box_i, of_i, i) in group(p).iter().filter(|(aabb, ..)| aabb.overlaps(&hulls[q as usize])) {
             for (_, of_j, j) in group(q).iter().filter(|(aabb, ..)| aabb.overlaps(box_i)) {
@@ -335,7 +348,10 @@ pub(crate) fn contacts_with(points: &[Point3], triangles: &[[u32; 3]], fans: &Fa
             }
         }
         if batch.len() >= BATCH {
-            test_pairs(points, triangles, &batch, &mut found);
+            is_over |= is_stopped();
+            if !is_over {
+                test_pairs(points, triangles, &batch, &mut found);
+            }
             batch.clear();
         }
     });

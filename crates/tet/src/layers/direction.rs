@@ -1,7 +1,8 @@
 //! Inward direction at each vertex of a wall.
 
-use anastomesh_mesh::geometry::unit_normal;
-use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::adjacency::Incidence;
+use anastomesh_mesh::geometry::{Point3, Vec3, unit_normal};
+use rayon::prelude::*;
 
 /// Steps towards the centre of the smallest cap that contains all normals at a vertex.
 const STEPS: u32 = 40;
@@ -10,12 +11,14 @@ const PASSES: usize = 3;
 /// Minimum steepness of a smoothed direction, relative to that before.
 const KEEPS: f64 = 0.6;
 
-/// Inward directions at the vertices of a wall, and the triangle normals around each.
+/// Inward directions at the vertices of a wall.
 pub struct Directions {
     /// Unit vectors into the volume; zero off the wall, and if no direction leads away from all triangles.
     pub ways: Vec<Vec3>,
-    /// Outward normals of the triangles at each vertex of the wall.
-    normals: Vec<Vec<Vec3>>,
+    /// Outward normal of each triangle of the wall.
+    normals: Vec<Vec3>,
+    /// Triangles at each vertex.
+    at_vertex: Incidence,
 }
 
 impl Directions {
@@ -23,45 +26,45 @@ impl Directions {
     /// triangles of its vertex from behind as steeply as possible. It is the reversed centre of the smallest spherical
     /// cap that contains their normals.
     pub fn new(points: &[Point3], wall: &[[u32; 3]]) -> Self {
-        let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
-        for triangle in wall {
+        let normal = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|v| points[v as usize].coords);
-            let normal = unit_normal(a, b, c);
-            for &v in triangle {
-                normals[v as usize].push(normal);
-            }
-        }
-        let ways = normals.iter().map(|of_vertex| inward_direction(of_vertex)).collect();
-        Self { ways, normals }
+            unit_normal(a, b, c)
+        };
+        let normals = wall.par_iter().map(normal).collect();
+        let mut made = Self { ways: Vec::new(), normals, at_vertex: Incidence::of_cells(wall, points.len()) };
+        made.ways = (0..points.len()).into_par_iter().map(|v| inward_direction(&made.normals_at(v))).collect();
+        made
+    }
+
+    fn normals_at(&self, v: usize) -> Vec<Vec3> {
+        self.at_vertex.get(v as u32).iter().map(|&t| self.normals[t as usize]).collect()
     }
 
     /// Minimum cosine between an inward direction at a vertex and the reversed normals around it.
     pub fn steepness(&self, v: usize, way: &Vec3) -> f64 {
-        steepness(way, &self.normals[v])
+        steepness(way, self.at_vertex.get(v as u32).iter().map(|&t| &self.normals[t as usize]))
     }
 
     /// Direction that also sees a further triangle from behind, with an outward normal; zero if there is none.
     pub fn way_with(&self, v: usize, normal: Vec3) -> Vec3 {
-        let normals: Vec<Vec3> = self.normals[v].iter().copied().chain([normal]).collect();
+        let mut normals = self.normals_at(v);
+        normals.push(normal);
         inward_direction(&normals)
     }
 
     /// Averages directions with those of neighbours, within the minimum steepness, except at held vertices.
     pub fn smooth(&mut self, wall: &[[u32; 3]], is_held: &[bool]) {
         for _ in 0..PASSES {
-            let mut sums = vec![Vec3::zeros(); self.ways.len()];
-            for &[a, b, c] in wall {
-                for (v, [x, y]) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-                    sums[v as usize] += self.ways[x as usize] + self.ways[y as usize];
-                }
-            }
-            for (v, sum) in sums.into_iter().enumerate().filter(|(v, _)| !is_held[*v]) {
+            let smoother = |v: usize| {
                 let own = self.ways[v];
-                let Some(way) = sum.try_normalize(0.0).and_then(|sum| (sum + own).try_normalize(0.0)) else { continue };
-                if steepness(&way, &self.normals[v]) >= KEEPS * steepness(&own, &self.normals[v]) {
-                    self.ways[v] = way;
-                }
-            }
+                let others = |&t: &u32| wall[t as usize].into_iter().filter(|&w| w as usize != v);
+                let of_triangle = |t| others(t).map(|w| self.ways[w as usize]).sum::<Vec3>();
+                let sum: Vec3 = self.at_vertex.get(v as u32).iter().map(of_triangle).sum();
+                let way = sum.try_normalize(0.0).and_then(|sum| (sum + own).try_normalize(0.0));
+                let is_steep = |way: &Vec3| self.steepness(v, way) >= KEEPS * self.steepness(v, &own);
+                way.filter(|way| !is_held[v] && is_steep(way)).unwrap_or(own)
+            };
+            self.ways = (0..self.ways.len()).into_par_iter().map(smoother).collect();
         }
     }
 }
@@ -72,9 +75,15 @@ pub fn openness(normals: &[Vec3]) -> f64 {
     steepest(normals).map_or(-1.0, |(seen, _)| seen)
 }
 
+/// True if the openness is at least `least`. Faster than the value.
+pub fn is_open(normals: &[Vec3], least: f64) -> bool {
+    let mean = -normals.iter().sum::<Vec3>();
+    mean.try_normalize(0.0).is_some_and(|way| steepness(&way, normals) >= least) || openness(normals) >= least
+}
+
 /// Minimum cosine between an inward direction and the reversed normals.
-fn steepness(way: &Vec3, normals: &[Vec3]) -> f64 {
-    normals.iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)
+fn steepness<'a>(way: &Vec3, normals: impl IntoIterator<Item = &'a Vec3>) -> f64 {
+    normals.into_iter().map(|normal| -way.dot(normal)).fold(1.0, f64::min)
 }
 
 /// Inward direction at a vertex; zero if there is none.
@@ -89,12 +98,12 @@ fn steepest(normals: &[Vec3]) -> Option<(f64, Vec3)> {
     let mut best: Option<(f64, Vec3)> = None;
     for step in 1..=STEPS {
         let Some(way) = middle.try_normalize(0.0) else { break };
-        let seen = steepness(&way, normals);
+        // The furthest of unit vectors has the least cosine.
+        let cosines = normals.iter().map(|normal| (-way.dot(normal), normal));
+        let Some((seen, furthest)) = cosines.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         if best.is_none_or(|(most, _)| seen > most) {
             best = Some((seen, way));
         }
-        let far = |a: &Vec3| (middle + *a).norm_squared();
-        let Some(furthest) = normals.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { break };
         middle += (-furthest - middle) / f64::from(step + 1);
     }
     best

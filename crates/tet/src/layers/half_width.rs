@@ -18,8 +18,8 @@ pub(super) fn half_widths(surface: &TriMesh, ways: &[Vec3]) -> Vec<f64> {
 /// is. `ways` may end before the vertices.
 pub fn clear_widths(surface: &TriMesh, ways: &[Vec3], most: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
     let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
-    let boxes: Vec<Aabb> = surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect();
-    let tree = Bvh::new(&boxes);
+    let boxes: Vec<Aabb> = surface.triangles.par_iter().map(|t| Aabb::of_points(corners(t))).collect();
+    let tree = Bvh::of(boxes);
     let first = STEP * surface.mean_edge();
     let across = |v: u32, from: &Point3, way: &Vec3, furthest: f64| {
         let (mut begin, mut step) = (0.0, first);

@@ -29,9 +29,9 @@ mod stack;
 mod tests;
 mod whole;
 
-pub use direction::{Directions, openness};
+pub use direction::{Directions, is_open, openness};
 pub use half_width::clear_widths;
 pub use inset::{Inset, Places, Ways, inset, lower};
-pub use stack::{Numbers, Stack, rims, toward};
+pub use stack::{Numbers, rims, toward};
 pub use whole::LayerSummary;
 pub(super) use whole::{LayerSides, Layered, layered};

@@ -118,6 +118,17 @@ impl Numbers {
         wall.iter().flat_map(|&triangle| (0..self.layers).map(move |i| (triangle, i))).flat_map(layer).collect()
     }
 
+    /// Wall triangles, seen from outside, with a tetrahedron that is not positive at these positions of all copies.
+    pub fn turned(&self, wall: &[[u32; 3]], points: &[Point3]) -> Vec<[u32; 3]> {
+        let is_turned = |triangle: &&[u32; 3]| {
+            self.tets_at(**triangle).any(|tet| {
+                let [a, b, c, d] = tet.map(|v| &points[v as usize]);
+                orient3d(a, b, c, d) <= 0.0
+            })
+        };
+        wall.par_iter().filter(is_turned).copied().collect()
+    }
+
     /// Tetrahedra of a layer at a wall triangle seen from outside. Vertices without copies leave fewer than three.
     fn prism(&self, triangle: [u32; 3], layer: u32) -> impl Iterator<Item = [u32; 4]> {
         let mut sorted = triangle;
@@ -153,30 +164,9 @@ impl<'a> Stack<'a> {
         Self { wall, numbers, points }
     }
 
-    /// Creates the stack from the positions of all copies, as `numbers` counts them.
-    pub fn of_copies(wall: &'a [[u32; 3]], numbers: Numbers, points: Vec<Point3>) -> Self {
-        Self { wall, numbers, points }
-    }
-
     /// Wall triangles with a tetrahedron that is not positive.
     pub fn turned(&self) -> Vec<[u32; 3]> {
-        let is_turned = |triangle: &&[u32; 3]| {
-            self.numbers.tets_at(**triangle).any(|tet| {
-                let [a, b, c, d] = tet.map(|v| &self.points[v as usize]);
-                orient3d(a, b, c, d) <= 0.0
-            })
-        };
-        self.wall.par_iter().filter(is_turned).copied().collect()
-    }
-
-    /// Positions of all copies.
-    pub fn points(&self) -> &[Point3] {
-        &self.points
-    }
-
-    /// Positions of all copies.
-    pub fn into_points(self) -> Vec<Point3> {
-        self.points
+        self.numbers.turned(self.wall, &self.points)
     }
 
     /// Joins all layers with the `core` mesh inside, whose points begin with the inner positions. The result's points

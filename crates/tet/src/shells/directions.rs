@@ -4,6 +4,7 @@ use super::shell::of_caps;
 use crate::layers::Directions;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use rustc_hash::FxHashMap;
 
 /// Minimum cosine between a direction in the plane of a cap and the normals of the wall. The wall behind a cap may rise
 /// above its plane, where a tip ends inside a fork; the ring is not flat there.
@@ -22,12 +23,22 @@ pub(super) enum Side {
     Front(Vec3),
 }
 
+/// Regions of the outer positions. Most vertices are free.
+#[derive(Debug, Default)]
+pub(super) struct Sides(FxHashMap<u32, Side>);
+
+impl Sides {
+    pub fn at(&self, v: usize) -> Side {
+        self.0.get(&(v as u32)).copied().unwrap_or(Side::Free)
+    }
+}
+
 /// Unit vectors that lead away from a wall, whose triangles are seen from inside, and where their vertices may go. At the
 /// rim of a cap they lie in its plane, or lead to its front.
-pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> (Vec<Vec3>, Vec<Side>) {
+pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> (Vec<Vec3>, Sides) {
     let mut ways = Directions::new(&surface.points, wall);
     let mut is_held = vec![false; surface.points.len()];
-    let mut sides = vec![Side::Free; surface.points.len()];
+    let mut sides = Sides::default();
     for (_, triangles) in of_caps(surface, caps) {
         let (centre, normal) = plane(&surface.points, &triangles);
         for v in triangles.into_iter().flatten().map(|v| v as usize) {
@@ -36,7 +47,9 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
             if ways.ways[v] != Vec3::zeros() {
                 let way = surface.points[v] - centre;
                 let flat = (way - normal * way.dot(&normal)).try_normalize(0.0).unwrap_or_default();
-                (ways.ways[v], sides[v]) = at_rim(&ways, v, flat, normal);
+                let (way, side) = at_rim(&ways, v, flat, normal);
+                ways.ways[v] = way;
+                sides.0.insert(v as u32, side);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Local search for outer positions where prisms are inverted or much flatter than their thickness requires.
 
-use super::directions::Side;
+use super::directions::{Side, Sides};
 use super::shell::{Shell, depths};
 use crate::layers::{Numbers, toward};
 use anastomesh_mesh::TriMesh;
@@ -25,7 +25,7 @@ pub(super) struct Improver<'a> {
     /// Fractions of the offset at which the copies of each vertex lie.
     depths: Vec<f64>,
     /// Region in which the outer position of each vertex may lie.
-    sides: &'a [Side],
+    sides: &'a Sides,
     /// Quality of a right prism with the thickness wanted, at each triangle.
     ideal: Vec<f64>,
     /// Triangles at each vertex.
@@ -38,7 +38,7 @@ impl<'a> Improver<'a> {
         (surface, wall): (&'a TriMesh, &'a [[u32; 3]]),
         numbers: &'a Numbers,
         shells: &[Shell],
-        sides: &'a [Side],
+        sides: &'a Sides,
         heights: &[f64],
     ) -> Self {
         let depths = (0..surface.points.len()).flat_map(|v| depths(shells, v)).collect();
@@ -96,7 +96,7 @@ impl<'a> Improver<'a> {
         let offset = from - self.surface.points[v];
         let Some(way) = offset.try_normalize(0.0) else { return Vec::new() };
         let nearer = from - way * step;
-        let side = match self.sides[v] {
+        let side = match self.sides.at(v) {
             Side::Flat(normal) => {
                 let side = way.cross(&normal);
                 return vec![nearer, from + side * step, from - side * step];
@@ -109,7 +109,7 @@ impl<'a> Improver<'a> {
             (side * angle.cos() + other * angle.sin()) * step
         };
         let shifts: Vec<Vec3> = (0..TURNS).map(beside).collect();
-        let may_be_at = |place: &Point3| match self.sides[v] {
+        let may_be_at = |place: &Point3| match self.sides.at(v) {
             Side::Front(normal) => (place - self.surface.points[v]).dot(&normal) >= 0.0,
             Side::Free | Side::Flat(_) => true,
         };

@@ -184,11 +184,10 @@ fn shell_of_layer(first: &[u32], layer: u32) -> u32 {
     first.partition_point(|&start| start <= layer) as u32 - 1
 }
 
-impl Settled<'_> {
+impl Settled {
     /// Result of the growth without tetrahedra, and the numbers of its points.
     fn shells(self, given: &Given) -> (Shells, Numbers) {
-        let Self { stack, shares } = self;
-        let numbers = stack.numbers.clone();
+        let Self { numbers, mut points, shares } = self;
         let first = first_layers(given.shells);
         let mut made = Shells { shares, ..Shells::default() };
         // The prisms see the wall from inside.
@@ -201,7 +200,7 @@ impl Settled<'_> {
                 made.rings.push(Ring { cap, shell, triangles: own.map(|(_, triangle)| *triangle).collect() });
             }
         }
-        made.points = stack.into_points().split_off(given.surface.points.len());
+        made.points = points.split_off(given.surface.points.len());
         (made, numbers)
     }
 }

@@ -4,9 +4,9 @@ use super::directions::directions;
 use super::heights::heights;
 use super::improve::Improver;
 use super::outside::Outside;
-use super::shell::{Given, Shell, depths};
+use super::shell::{Given, depths};
 use crate::error::{Obstacle, Stuck, TetError};
-use crate::layers::{Numbers, Places, Stack, Ways, rims, toward};
+use crate::layers::{Numbers, Places, Ways, rims, toward};
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::adjacency::vertices_of;
@@ -22,14 +22,16 @@ const LEAST: f64 = 1e-3;
 const PATIENT: usize = 8;
 
 /// Shells with their final positions.
-pub(super) struct Settled<'a> {
-    pub stack: Stack<'a>,
+pub(super) struct Settled {
+    pub numbers: Numbers,
+    /// Positions of the surface's points and of all copies.
+    pub points: Vec<Point3>,
     /// Thickness of each vertex relative to that wanted.
     pub shares: Vec<f64>,
 }
 
 /// Finds positions.
-pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>, TetError> {
+pub(super) fn settle(given: &Given, watch: &Watch) -> Result<Settled, TetError> {
     let Given { surface, wall, caps, shells, around } = *given;
     let points = &surface.points;
     let (ways, sides) = directions(surface, wall, caps);
@@ -58,11 +60,16 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
     for pass in 0..MAX_PASSES {
         watch.ask()?;
         improver.improve(&changed, &mut places.wanted);
-        let stack = Stack::of_copies(wall, numbers.clone(), copies(surface, &on_wall, &places.wanted, shells));
-        let mut obstacles = stack.turned();
+        let mut positions = Vec::with_capacity(numbers.len() as usize + around.map_or(0, |around| around.points.len()));
+        positions.extend_from_slice(points);
+        for v in (0..points.len()).filter(|&v| on_wall[v]) {
+            let copy = |depth| toward(&points[v], &places.wanted[v], depth);
+            positions.extend(depths(shells, v).into_iter().map(copy));
+        }
+        let mut obstacles = numbers.turned(wall, &positions);
         let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
         if obstacles.is_empty() {
-            obstacles = outside.meeting(stack.points(), watch)?;
+            obstacles = outside.meeting(positions, watch)?;
         }
         if obstacles.is_empty() {
             let share = |v: usize| match length(&places.wanted, v) / wanted[v] {
@@ -70,7 +77,8 @@ pub(super) fn settle<'a>(given: &Given<'a>, watch: &Watch) -> Result<Settled<'a>
                 share if !on_wall[v] || share > 1.0 - 1e-9 => 1.0,
                 share => share,
             };
-            return Ok(Settled { stack, shares: (0..points.len()).map(share).collect() });
+            let shares = (0..points.len()).map(share).collect();
+            return Ok(Settled { points: outside.into_points(numbers.len() as usize), numbers, shares });
         }
         let mut offsets = Ways::new(&places);
         offsets.drawn_back = FACTORS[usize::from(pass >= PATIENT)];
@@ -95,15 +103,6 @@ fn joined(surface: &TriMesh, around: Option<&TriMesh>) -> TriMesh {
         let first = all.points.len() as u32;
         all.points.extend_from_slice(&around.points);
         all.triangles.extend(around.triangles.iter().map(|t| t.map(|v| v + first)));
-    }
-    all
-}
-
-/// Positions of the surface's points and of their copies.
-fn copies(surface: &TriMesh, on_wall: &[bool], outer: &[Point3], shells: &[Shell]) -> Vec<Point3> {
-    let mut all = surface.points.clone();
-    for v in (0..outer.len()).filter(|&v| on_wall[v]) {
-        all.extend(depths(shells, v).into_iter().map(|depth| toward(&surface.points[v], &outer[v], depth)));
     }
     all
 }
