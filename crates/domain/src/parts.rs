@@ -100,34 +100,41 @@ impl<'a> DomainInParts<'a> {
         shelf: &'a dyn Shelf,
         progress: &dyn Progress,
     ) -> Result<Self, DomainError> {
-        let Grown { surface, moved, shells, prisms, around, report } = Grown::of(lumen, network, plan, progress)?;
+        let Grown { surface, moved, mut shells, prisms, around, report } = Grown::of(lumen, network, plan, progress)?;
         let of_lumen = lumen.counts();
-        let layout = Layout::new(&surface, &shells, around.as_ref())?;
-        let in_mesh = |v: u32| layout.in_mesh(of_lumen.points as u32, v);
+        let mut layout = Layout::new(&surface, &shells, around.as_ref())?;
         let of_patches = (lumen.patches().to_vec(), Vec::new(), Vec::new());
-        let faces = Labelled::of(of_patches, &layout, plan, &in_mesh);
-        let of_organ = around.iter().flat_map(|around| &around.surfaces).flat_map(|surface| &surface.points);
-        let mut around_points: Vec<Point3> = of_organ.copied().collect();
+        let faces = Labelled::of(of_patches, &layout, plan, &|v| layout.in_mesh(of_lumen.points as u32, v));
+        let boundary = layout.outsides.pop().map(|outside| {
+            let numbers: Vec<u32> =
+                outside.numbers.iter().map(|&v| layout.in_mesh(of_lumen.points as u32, v)).collect();
+            (outside.boundary, numbers)
+        });
+        // Only points are needed from here on.
+        drop(layout);
+        let on_surface = surface.into_points();
+        let shell_points = std::mem::take(&mut shells.points);
+        drop(shells);
+        let mut around: Vec<Point3> =
+            around.into_iter().flat_map(|around| around.surfaces).flat_map(|surface| surface.points).collect();
         let mut pieces = Vec::new();
-        if let (Some(plan), Some(outside)) = (&plan.tissue, layout.outsides.first()) {
-            let first = (of_lumen.points + shells.points.len() + around_points.len()) as u32;
-            let numbers: Vec<u32> = outside.numbers.iter().map(|&v| in_mesh(v)).collect();
+        if let (Some(plan), Some((boundary, numbers))) = (&plan.tissue, boundary) {
+            let first = (of_lumen.points + shell_points.len() + around.len()) as u32;
             let tissue = Tissue { plan, filler: plan.filler(), shelf, progress };
             let interfaces;
-            (interfaces, pieces) = tissue.fill(&outside.boundary, &numbers, first)?;
-            around_points.extend(interfaces);
+            (interfaces, pieces) = tissue.fill(boundary, &numbers, first)?;
+            around.extend(interfaces);
         }
-        drop(layout);
         let mut mesh = RegionParts {
             lumen,
             of_lumen,
             starts: Vec::new(),
             moved,
-            on_surface: (surface.points, surface.surface.points),
+            on_surface,
             of_shells: prisms.len().div_ceil(TRIANGLES).max(1) as u32,
             prisms,
-            shells: shells.points,
-            around: around_points,
+            shells: shell_points,
+            around,
             tissue: tissue_id(plan),
             pieces,
             shelf,
@@ -155,14 +162,15 @@ impl Tissue<'_> {
     /// the pieces, whose own points follow.
     fn fill(
         &self,
-        boundary: &TriMesh,
+        boundary: TriMesh,
         numbers: &[u32],
         first: u32,
     ) -> Result<(Vec<Point3>, Vec<StoredPiece>), DomainError> {
         self.progress.at(Stage::Tissue, 0, 0);
         let watch = Watch::asking(self.progress);
         let Pieces { mut points, pieces, .. } =
-            Pieces::of(&self.filler, boundary, self.plan.piece, &watch).map_err(DomainError::Tissue)?;
+            Pieces::of(&self.filler, &boundary, self.plan.piece, &watch).map_err(DomainError::Tissue)?;
+        drop(boundary);
         let interfaces = points.split_off(numbers.len());
         let given = numbers.len() as u32;
         let in_mesh = |v: u32| numbers.get(v as usize).copied().unwrap_or_else(|| first + v - given);

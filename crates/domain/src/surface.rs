@@ -1,6 +1,6 @@
 //! Boundary of a lumen as a surface with its own points.
 
-use anastomesh_mesh::geometry::DisjointSets;
+use anastomesh_mesh::geometry::{DisjointSets, Point3};
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{TriMesh, WALL};
 use rustc_hash::FxHashMap;
@@ -42,6 +42,11 @@ impl LumenSurface {
         let surface = TriMesh { points: mesh.points_of(&points)?, triangles };
         let (caps, patches) = caps(&surface, &of_faces);
         Ok(Self { surface, points, caps, patches })
+    }
+
+    /// Points of the mesh, and their positions.
+    pub fn into_points(self) -> (Vec<u32>, Vec<Point3>) {
+        (self.points, self.surface.points)
     }
 }
 

@@ -26,7 +26,7 @@ use crate::progress::{Progress, Stage, ask};
 use crate::quality::{QualitySum, Spokes, volume6};
 use crate::region::NamedRegion;
 use crate::source::{FacePiece, MeshSource, TetPiece};
-use crate::{Patch, TET_FACES, face_key, same_turn};
+use crate::{Patch, TET_FACES};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::io;
 
@@ -41,8 +41,9 @@ pub fn check_regions_in_passes(
     progress: &dyn Progress,
 ) -> io::Result<CheckReport> {
     let mut check = Passes::new(mesh, regions, progress);
-    check.faces()?;
-    check.tetrahedra()?;
+    let unnamed = check.faces()?;
+    check.tetrahedra(&unnamed)?;
+    drop(unnamed);
     check.labels()?;
     check.compare();
     let surfaces = check.surfaces()?;
@@ -81,15 +82,19 @@ struct PartSum {
     /// Tetrahedra, and the region of each.
     tets: Vec<[u32; 4]>,
     of_tets: Vec<i32>,
-    /// Unnamed faces that the tetrahedra have from the other side, with their region.
+    /// Faces on no named interface that the tetrahedra have from the other side, with their region.
     beyond: Vec<([u32; 3], i32)>,
 }
 
-/// Labelled face on no named interface.
-struct Unnamed {
-    face: [u32; 3],
-    /// Region beyond it, if tetrahedra have it from there.
-    beyond: Option<i32>,
+/// Face with its smallest vertex first, so that equal faces of one orientation have equal vertices.
+fn oriented([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
 }
 
 struct Passes<'a> {
@@ -98,8 +103,8 @@ struct Passes<'a> {
     progress: &'a dyn Progress,
     /// Regions on both sides of the interfaces with a patch.
     pairs: FxHashMap<i32, [i32; 2]>,
-    /// Faces that are on no named interface, with the region beyond each, if tetrahedra of another region have it.
-    unnamed: FxHashMap<[u32; 3], Unnamed>,
+    /// Region beyond each face on no named interface that tetrahedra have from the other side.
+    beyond: FxHashMap<[u32; 3], i32>,
     /// Sum of the labelled faces of each region, and their number.
     labelled: FxHashMap<i32, (Chain, usize)>,
     sums: FxHashMap<i32, RegionSum>,
@@ -125,7 +130,7 @@ impl<'a> Passes<'a> {
             regions,
             progress,
             pairs: mesh.patches().iter().filter_map(pair).collect(),
-            unnamed: FxHashMap::default(),
+            beyond: FxHashMap::default(),
             labelled: FxHashMap::default(),
             sums: FxHashMap::default(),
             components: FxHashMap::default(),
@@ -146,20 +151,20 @@ impl<'a> Passes<'a> {
             let own = at(&piece.blocks, i);
             let other = |[a, b]: &[i32; 2]| if *a == own { *b } else { *a };
             let named = self.pairs.get(&at(&piece.patches, i)).map(other);
-            (own, named.or_else(|| self.unnamed.get(&face_key(*face))?.beyond))
+            (own, named.or_else(|| self.beyond.get(&oriented(*face)).copied()))
         };
         piece.faces.iter().enumerate().map(pair).collect()
     }
 
-    /// Lists the faces on no named interface. Tests the others for the region under them.
-    fn faces(&mut self) -> io::Result<()> {
-        let (mut wrong, mut unnamed) = (Vec::new(), FxHashMap::default());
+    /// Returns the faces on no named interface. Tests the others for the region under them.
+    fn faces(&mut self) -> io::Result<FxHashSet<[u32; 3]>> {
+        let (mut wrong, mut unnamed) = (Vec::new(), FxHashSet::default());
         self.mesh.each_faces(|piece| {
             ask(self.progress)?;
             for (i, &face) in piece.faces.iter().enumerate() {
                 match piece.patches.get(i).and_then(|patch| self.pairs.get(patch)) {
                     None => {
-                        unnamed.insert(face_key(face), Unnamed { face, beyond: None });
+                        unnamed.insert(oriented(face));
                     }
                     Some(pair) if piece.blocks.get(i) != Some(&pair[0]) => wrong.push(face),
                     Some(_) => {}
@@ -170,8 +175,7 @@ impl<'a> Passes<'a> {
         for face in wrong {
             self.tally(Line::InterfaceSides).add(|| Offender::new(OffenderKind::Face, &face, None));
         }
-        self.unnamed = unnamed;
-        Ok(())
+        Ok(unnamed)
     }
 
     /// Adds up the labelled faces.
@@ -194,8 +198,8 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    /// Checks the tetrahedra, and adds up their faces.
-    fn tetrahedra(&mut self) -> io::Result<()> {
+    /// Checks the tetrahedra, and adds up their faces. Finds the regions beyond faces on no named interface.
+    fn tetrahedra(&mut self, unnamed: &FxHashSet<[u32; 3]>) -> io::Result<()> {
         let counts = self.mesh.counts();
         let mut unused = vec![true; counts.points];
         let mut sets = RegionSets::new(counts.points);
@@ -204,15 +208,15 @@ impl<'a> Passes<'a> {
         let (mut quality, mut repeated, mut flat) = (QualitySum::default(), Vec::new(), Vec::new());
         let progress = self.progress;
         let mut unnamed_points = vec![false; counts.points];
-        for &v in self.unnamed.keys().flatten() {
+        for &v in unnamed.iter().flatten() {
             unnamed_points[v as usize] = true;
         }
-        let (on_unnamed, unnamed) = (|v: u32| unnamed_points[v as usize], &self.unnamed);
-        let mut beyond = Vec::new();
+        let is_unnamed = |face: &[u32; 3]| face.iter().all(|&v| unnamed_points[v as usize]) && unnamed.contains(face);
+        let mut beyond = FxHashMap::default();
         mesh.each_part(
             |part| {
                 ask(progress)?;
-                part_sum(mesh, &mesh.tets(part)?, &on_unnamed, unnamed)
+                part_sum(mesh, &mesh.tets(part)?, &is_unnamed)
             },
             |part| {
                 beyond.extend(part.beyond);
@@ -232,11 +236,7 @@ impl<'a> Passes<'a> {
                 Ok(())
             },
         )?;
-        for (face, region) in beyond {
-            if let Some(known) = self.unnamed.get_mut(&face) {
-                known.beyond = Some(region);
-            }
-        }
+        self.beyond = beyond;
         for tet in repeated {
             self.tally(Line::NoRepeatedVertex).add(|| Offender::new(OffenderKind::Tet, &[tet], None));
         }
@@ -368,12 +368,7 @@ const OF_NETWORK: [Line; 10] = [
     Line::CapNormal,
 ];
 
-fn part_sum(
-    mesh: &dyn MeshSource,
-    piece: &TetPiece,
-    on_unnamed: &dyn Fn(u32) -> bool,
-    unnamed: &FxHashMap<[u32; 3], Unnamed>,
-) -> io::Result<PartSum> {
+fn part_sum(mesh: &dyn MeshSource, piece: &TetPiece, is_unnamed: &dyn Fn(&[u32; 3]) -> bool) -> io::Result<PartSum> {
     let mut made = PartSum::default();
     let corners = mesh.corners_of(&piece.tets)?;
     for (i, (tet, corners)) in (0..).zip(piece.tets.iter().zip(&corners)) {
@@ -381,10 +376,9 @@ fn part_sum(
         let sum = made.regions.entry(region).or_default();
         for face in TET_FACES.map(|side| side.map(|corner| tet[corner])) {
             add(&mut sum.chain, face, false);
-            if face.iter().all(|v| on_unnamed(*v))
-                && unnamed.get(&face_key(face)).is_some_and(|known| !same_turn(known.face, face))
-            {
-                made.beyond.push((face_key(face), region));
+            let other_side = oriented([face[0], face[2], face[1]]);
+            if is_unnamed(&other_side) {
+                made.beyond.push((other_side, region));
             }
         }
         let [a, b, c, d] = corners.each_ref();
