@@ -63,6 +63,12 @@ fn a_dry_run_meshes_nothing_and_comes_close() {
         [&dry["estimate"]["tets"], &made["run"]["mesh"]["tets"]].map(|n| n.as_f64().expect("a number"));
     assert!((0.5..2.0).contains(&(about / found)), "{about} {found}");
     assert_eq!(dry["clusters"], made["run"]["blocks"]["clusters"]);
+    let regions = ["--wall", "0.2r", "--tissue", "box", "--json"];
+    let dry = json(&mesh(&fixture("tree_30.vtp"), &out, &[&regions[..], &["--dry-run"]].concat()));
+    let made = json(&mesh(&fixture("tree_30.vtp"), &out, &regions));
+    let [about, found] =
+        [&dry["estimate"]["tets"], &made["check"]["counts"]["tets"]].map(|n| n.as_f64().expect("a number"));
+    assert!((0.5..2.0).contains(&(about / found)), "{about} {found}");
 }
 
 #[test]

@@ -83,7 +83,7 @@ pub fn of_flow(error: &FlowError) -> String {
 /// Error of a run that exceeds a limit, with the options that help.
 pub fn of_size(error: &TooLarge) -> String {
     let hint = match error {
-        TooLarge::Block { .. } => " (--memory, --rho)",
+        TooLarge::Block { .. } | TooLarge::Regions { .. } => " (--memory, --rho)",
         TooLarge::Whole { .. } => " (--memory)",
         TooLarge::Disk { .. } => " (--rho)",
     };

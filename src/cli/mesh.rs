@@ -23,7 +23,7 @@ use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::regions::{Lumen, Regions};
+use super::regions::{Lumen, Regions, with_regions};
 use super::run::{failure, remarks};
 use super::stop::{self, Stop};
 use super::work::{self, WorkArgs, WorkDir};
@@ -227,7 +227,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         args.write_refined(&prepared.networks)?;
     }
     if args.dry_run {
-        let found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
+        let mut found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
+        found.estimate = with_regions(&found.estimate, &domain);
         print(args.common.json, &found, || forecast(&found, pool.current_num_threads()))?;
         return Ok(Exit::Fine);
     }
@@ -322,7 +323,8 @@ impl Args {
         };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
-        let fits = |estimate: &Estimate| limits::fits(estimate, &plan, &place, kept, (&self.output, format));
+        let fits =
+            |lumen: &Estimate| limits::fits(&with_regions(lumen, domain), &plan, &place, kept, (&self.output, format));
         let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
         self.finish(made, &plan, (domain, Some(&store)), bars)
     }

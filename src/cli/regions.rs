@@ -1,6 +1,6 @@
 //! Regions around a lumen, in memory or in parts.
 
-use crate::pipeline::Store;
+use crate::pipeline::{Estimate, Store};
 use anastomesh_domain::{Domain, DomainError, DomainInParts, DomainPlan, ShellsReport};
 use anastomesh_mesh::NamedRegion;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -10,6 +10,31 @@ use anastomesh_skeleton::Skeleton;
 
 /// Maximum boundary faces of a lumen whose regions are made in memory.
 const IN_MEMORY: usize = 1_000_000;
+
+/// Tetrahedra of the tissue per triangle of the wall, as measured with kidneys at a growth of 1.3.
+const TISSUE_PER_TRIANGLE: f64 = 9.4;
+/// Bytes of memory per tetrahedron of regions that are made in memory, the lumen included.
+const BYTES_PER_TET: f64 = 90.0;
+/// Bytes of memory per triangle of the wall for regions in parts: while shells grow, and while tissue is divided.
+const SHELLS_BYTES_PER_TRIANGLE: f64 = 350.0;
+const TISSUE_BYTES_PER_TRIANGLE: f64 = 350.0;
+
+/// Estimate of a mesh with regions from that of its lumen.
+pub fn with_regions(lumen: &Estimate, plan: &DomainPlan) -> Estimate {
+    if plan.is_plain() {
+        return *lumen;
+    }
+    let layers: u32 = plan.shells.iter().map(|shell| shell.layers).sum();
+    let of_shells = 3.0 * f64::from(layers) * lumen.wall;
+    let of_tissue = if plan.tissue.is_some() { TISSUE_PER_TRIANGLE * lumen.wall } else { 0.0 };
+    let tets = of_shells + of_tissue;
+    if plan.may_be_in_parts() && lumen.wall > IN_MEMORY as f64 {
+        let per_triangle = if of_tissue > 0.0 { TISSUE_BYTES_PER_TRIANGLE } else { SHELLS_BYTES_PER_TRIANGLE };
+        lumen.with_regions(tets, of_tissue, (per_triangle * lumen.wall) as u64)
+    } else {
+        lumen.with_regions(tets, 0.0, (BYTES_PER_TET * (lumen.tets + tets)) as u64)
+    }
+}
 
 /// Regions around a lumen. Both kinds have the same content.
 pub enum Regions<'a> {

@@ -67,6 +67,12 @@ pub struct Estimate {
     pub written_bytes: u64,
     /// Operations of all blocks, as counted by budgets: about 0.05 µs each.
     pub operations: f64,
+    /// Triangles of the lumen's wall.
+    #[serde(default)]
+    pub wall: f64,
+    /// Bytes of memory for regions around the lumen; 0 without any.
+    #[serde(default)]
+    pub regions_bytes: u64,
 }
 
 impl Estimate {
@@ -102,15 +108,32 @@ impl Estimate {
         for cost in costs {
             all.tets += cost.tets;
             all.operations += cost.operations;
+            all.wall += cost.wall;
             all.largest_block_tets = all.largest_block_tets.max(cost.tets);
             all.largest_block_bytes = all.largest_block_bytes.max(cost.bytes);
         }
         all.stored_bytes = (all.tets * STORED_PER_TET) as u64;
-        let is_wide = all.tets * NUMBERS_PER_TET > f64::from(i32::MAX);
-        let written = if is_wide { WRITTEN_WIDE_PER_TET } else { WRITTEN_PER_TET };
-        all.written_bytes = (all.tets * written) as u64;
+        all.written_bytes = written(all.tets);
         all
     }
+
+    /// With further tetrahedra in regions around the lumen, some of which are stored, and `memory` bytes to make them.
+    #[must_use]
+    pub fn with_regions(self, tets: f64, stored: f64, memory: u64) -> Self {
+        Self {
+            tets: self.tets + tets,
+            stored_bytes: self.stored_bytes + (stored * STORED_PER_TET) as u64,
+            written_bytes: written(self.tets + tets),
+            regions_bytes: memory,
+            ..self
+        }
+    }
+}
+
+/// Bytes of a VTU.
+fn written(tets: f64) -> u64 {
+    let is_wide = tets * NUMBERS_PER_TET > f64::from(i32::MAX);
+    (tets * if is_wide { WRITTEN_WIDE_PER_TET } else { WRITTEN_PER_TET }) as u64
 }
 
 /// A machine that is too small for a run.
@@ -147,6 +170,18 @@ pub enum TooLarge {
         /// Bytes of memory that are allowed.
         memory: u64,
     },
+    /// The regions around the lumen do not fit into the memory that is allowed.
+    #[error(
+        "the regions around the lumen need about {1} of memory, more than the limit of {2} (about {0:.3e} triangles of the \
+         wall); raise the memory limit, or give a smaller rho",
+        estimate.wall, gibibytes(estimate.regions_bytes), gibibytes(*memory)
+    )]
+    Regions {
+        /// Expected cost of the run.
+        estimate: Estimate,
+        /// Bytes of memory that are allowed.
+        memory: u64,
+    },
     /// The disk is too small.
     #[error(
         "blocks and mesh need {1} on {place}, which has {2} free (about {0:.3e} tetrahedra); free some space, name another \
@@ -177,7 +212,7 @@ fn gibibytes(bytes: u64) -> String {
 /// Cost of a cluster. One whose grid does not fit into memory fails before it is made, and costs only what it is without.
 fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let cost = cluster_cost(cluster, plan);
-    let without_grid = of_tets(cost.tets);
+    let without_grid = Cost { wall: cost.wall, ..of_tets(cost.tets) };
     if cost.bytes > plan.memory && without_grid.bytes <= plan.memory { without_grid } else { cost }
 }
 
@@ -190,7 +225,8 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let thin = thinnest(cluster);
     let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
     let finer: f64 = cluster.fine.iter().map(|fork| fork.factor.powf(-POWER_OF_FORK) - 1.0).sum();
-    let cost = of_tets(plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer);
+    let tets = plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer;
+    let cost = Cost { wall: plain.wall, ..of_tets(tets) };
     let cells = cells(cluster, thin, plan);
     // An attempt with more cells fails before it makes a grid.
     if cells > MAX_CELLS as f64 {
@@ -252,7 +288,7 @@ fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost 
     let radii: f64 = pieces.map(|(length, radius)| length / radius).sum();
     let layers = of_layers(radii, plan) / plan.stretch;
     let per_radius = TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * plan.core.powf(POWER_OF_CORE_OF_TUBE);
-    of_tets(per_radius * radii / plan.stretch + layers)
+    Cost { wall: wall(radii, plan) / plan.stretch, ..of_tets(per_radius * radii / plan.stretch + layers) }
 }
 
 /// Of pieces of vessel: length, radius, thinnest radius of their block.
@@ -262,16 +298,22 @@ fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost 
     let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
     let radii = pieces.map(one).sum::<f64>();
     let per_radius = TETS * plan.rho.powf(POWER) * plan.core.powf(POWER_OF_CORE);
-    of_tets(per_radius * radii + of_layers(radii, plan))
+    Cost { wall: wall(radii, plan), ..of_tets(per_radius * radii + of_layers(radii, plan)) }
 }
 
 /// Number of layer tetrahedra along a length in radii.
 fn of_layers(radii: f64, plan: &MeshPlan) -> f64 {
     let layers = plan.layers.map_or(0, |layers| layers.count);
-    3.0 * f64::from(layers) * WALL * plan.rho * plan.rho * radii
+    3.0 * f64::from(layers) * wall(radii, plan)
+}
+
+/// Number of triangles of the wall along a length in radii.
+fn wall(radii: f64, plan: &MeshPlan) -> f64 {
+    WALL * plan.rho * plan.rho * radii
 }
 
 fn of_tets(tets: f64) -> Cost {
     // Casts of what is too large, or no number, end at the largest integer.
-    Cost { tets, bytes: (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64, operations: PER_TET * tets }
+    let bytes = (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64;
+    Cost { tets, bytes, operations: PER_TET * tets, wall: 0.0 }
 }

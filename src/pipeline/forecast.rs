@@ -73,6 +73,6 @@ impl Forecast {
 
     /// Bytes of memory on this number of threads.
     pub fn memory(&self, threads: usize) -> u64 {
-        AT_LEAST + self.estimate.largest_block_bytes * threads as u64
+        AT_LEAST + (self.estimate.largest_block_bytes * threads as u64).max(self.estimate.regions_bytes)
     }
 }

@@ -12,6 +12,8 @@ pub struct Cost {
     pub bytes: u64,
     /// Operations, as counted by budgets: about 0.05 µs each.
     pub operations: f64,
+    /// Triangles of the wall.
+    pub wall: f64,
 }
 
 /// Lets blocks in as long as their memory fits; one alone always comes in.
@@ -96,7 +98,7 @@ mod tests {
     use super::*;
 
     fn costs(bytes: &[u64]) -> Vec<Cost> {
-        bytes.iter().map(|&bytes| Cost { tets: bytes as f64, bytes, operations: 0.0 }).collect()
+        bytes.iter().map(|&bytes| Cost { tets: bytes as f64, bytes, operations: 0.0, wall: 0.0 }).collect()
     }
 
     #[test]

@@ -294,6 +294,7 @@ time     3 min (blocks 2 min, write 22 s)
             stored_bytes: 3_077_000_000,
             written_bytes: 4_163_000_000,
             operations: 0.0,
+            ..Estimate::default()
         };
         let found = Forecast {
             clusters: 59_000,

@@ -22,6 +22,9 @@ pub const RATIO: f64 = 400.0;
 /// the first one fails.
 const TOLERANCES: [f64; 3] = [0.05, 0.045, 0.04];
 
+/// Neighbouring spheres that are excluded together.
+const GROUP: usize = 256;
+
 /// Sphere: centre and radius.
 pub type Sphere = (Point3, f64);
 
@@ -32,7 +35,7 @@ pub type Sphere = (Point3, f64);
 /// [`TetError::Cancelled`].
 pub fn hull(spheres: &[Sphere], margin: f64, side: f64, watch: &Watch) -> Result<TriMesh, TetError> {
     let ways: Vec<Vec3> = sphere_surface(LEVEL).points.iter().map(|p| p.coords).collect();
-    let extremes: Vec<Sphere> = ways.par_iter().filter_map(|way| extreme(spheres, way)).collect();
+    let extremes = extremes(spheres, &ways);
     watch.ask()?;
     let body = Body::new(&ways, &extremes, margin);
     let extent = Aabb::of_points(extremes.iter().map(|(p, _)| p)).diagonal();
@@ -56,14 +59,37 @@ fn remeshed(surface: TriMesh, margin: f64, side: f64, watch: &Watch) -> Result<T
     Ok(surface)
 }
 
-/// Sphere that reaches furthest in a direction.
-fn extreme(spheres: &[Sphere], way: &Vec3) -> Option<Sphere> {
-    let reach = |(p, r): &Sphere| p.coords.dot(way) + r;
-    let further = |best: Option<(f64, Sphere)>, sphere: &Sphere| match best {
-        Some((most, _)) if most >= reach(sphere) => best,
-        _ => Some((reach(sphere), *sphere)),
+/// Spheres that reach furthest in each direction. Neighbours in the list are mostly close to each other, so that most groups
+/// of them are excluded as a whole.
+fn extremes(spheres: &[Sphere], ways: &[Vec3]) -> Vec<Sphere> {
+    let groups: Vec<(Sphere, &[Sphere])> = spheres.par_chunks(GROUP).map(|group| (around(group), group)).collect();
+    let furthest = |way: &Vec3| {
+        let bounds = || groups.iter().map(|(around, group)| (reach(around, way), *group));
+        let (_, nearest) = bounds().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let mut best = *nearest.iter().max_by(|a, b| reach(a, way).total_cmp(&reach(b, way)))?;
+        for (bound, group) in bounds() {
+            if bound > reach(&best, way) {
+                let further = |best: Sphere, s: &Sphere| if reach(s, way) > reach(&best, way) { *s } else { best };
+                best = group.iter().fold(best, further);
+            }
+        }
+        Some(best)
     };
-    spheres.iter().fold(None, further).map(|(_, sphere)| sphere)
+    ways.par_iter().filter_map(furthest).collect()
+}
+
+/// Sphere around others, rounded up.
+fn around(spheres: &[Sphere]) -> Sphere {
+    let all = Aabb::of_points(spheres.iter().map(|(p, _)| p));
+    let largest = spheres.iter().map(|(_, r)| *r).fold(0.0, f64::max);
+    let centre = all.min + (all.max - all.min) * 0.5;
+    let rounding = 1e-12 * (centre.coords.norm() + largest);
+    (centre, 0.5 * all.diagonal() + largest + rounding)
+}
+
+/// Extent of a sphere in a direction.
+fn reach((p, r): &Sphere, way: &Vec3) -> f64 {
+    p.coords.dot(way) + r
 }
 
 /// Intersection of half-spaces.

@@ -2,9 +2,10 @@
 
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::adjacency::vertices_of;
-use anastomesh_mesh::geometry::predicates::{orient2d, orient3d};
-use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, crossing, self_intersections};
+use anastomesh_mesh::geometry::predicates::{collinear, orient2d, orient3d};
+use anastomesh_mesh::geometry::{Aabb, Bvh, Contact, DisjointSets, Point3, Triangle, classify_triangles, crossing};
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// Closed surface with a search tree of its triangles.
 pub struct Closed<'a> {
@@ -15,8 +16,7 @@ pub struct Closed<'a> {
 impl<'a> Closed<'a> {
     pub fn new(surface: &'a TriMesh) -> Self {
         let corners = |t: &[u32; 3]| t.map(|v| &surface.points[v as usize]);
-        let boxes: Vec<Aabb> = surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect();
-        Self { surface, tree: Bvh::new(&boxes) }
+        Self { surface, tree: Bvh::of(surface.triangles.iter().map(|t| Aabb::of_points(corners(t))).collect()) }
     }
 
     pub fn corners(&self, t: u32) -> [&Point3; 3] {
@@ -41,6 +41,17 @@ impl<'a> Closed<'a> {
     /// True if a point lies exactly on the surface.
     pub fn touches(&self, p: &Point3) -> bool {
         self.near(&Aabb { min: *p, max: *p }).into_iter().any(|t| is_on(p, self.corners(t)))
+    }
+
+    /// True if another surface, which does not touch this one, lies inside.
+    pub fn holds(&self, other: &TriMesh) -> bool {
+        let mut parts = DisjointSets::new(other.points.len());
+        for &[a, b, c] in &other.triangles {
+            parts.join(a, b);
+            parts.join(b, c);
+        }
+        let roots: FxHashSet<u32> = other.triangles.iter().map(|t| parts.find(t[0])).collect();
+        roots.into_iter().all(|v| self.contains(&other.points[v as usize]))
     }
 
     /// Triangles that begin outside.
@@ -70,26 +81,26 @@ pub fn passes([p, q]: [&Point3; 2], [a, b, c]: [&Point3; 3], touching: bool) -> 
     (from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0) && one_turn(turns())
 }
 
-/// Triangles of the first surface that touch the second one, ascending.
+/// Triangles of the first surface that touch the second one, ascending. Those without area touch nothing.
 pub fn meeting(first: &TriMesh, second: &TriMesh) -> Vec<u32> {
-    let shared = Aabb::of_points(&second.points);
-    let near = |surface: &TriMesh, place: &Aabb| -> Vec<u32> {
-        let overlaps = |t: &[u32; 3]| Aabb::of_points(t.map(|v| &surface.points[v as usize])).overlaps(place);
-        let found = (0..).zip(&surface.triangles).filter(|(_, t)| overlaps(t));
-        found.map(|(t, _)| t).collect()
+    let (other, from) = (Closed::new(second), first.points.len() as u32);
+    let touches = |t: u32| {
+        let ids = first.triangles[t as usize];
+        let own = Triangle { ids, corners: ids.map(|v| &first.points[v as usize]) };
+        let is_met = |near: u32| {
+            let ids = second.triangles[near as usize].map(|v| v + from);
+            let other = Triangle { ids, corners: other.corners(near) };
+            has_area(&other) && matches!(classify_triangles(own, other), Contact::Improper(_))
+        };
+        let near = other.near(&Aabb::of_points(own.corners));
+        !near.is_empty() && has_area(&own) && near.into_iter().any(is_met)
     };
-    let own = near(first, &shared);
-    let other = near(second, &Aabb::of_points(&first.points));
-    let (from, count) = (first.points.len() as u32, own.len() as u32);
-    let mut triangles: Vec<[u32; 3]> = own.iter().map(|&t| first.triangles[t as usize]).collect();
-    triangles.extend(other.iter().map(|&t| second.triangles[t as usize].map(|v| v + from)));
-    let points: Vec<Point3> = first.points.iter().chain(&second.points).copied().collect();
-    let pairs = self_intersections(&points, &triangles).into_iter();
-    let mut found: Vec<u32> =
-        pairs.filter(|&(a, b)| (a < count) != (b < count)).map(|(a, b)| own[a.min(b) as usize]).collect();
-    found.sort_unstable();
-    found.dedup();
-    found
+    (0..first.triangles.len() as u32).into_par_iter().filter(|&t| touches(t)).collect()
+}
+
+fn has_area(triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle.corners;
+    !collinear(a, b, c)
 }
 
 /// The surface without unused points, oriented outwards as a whole.

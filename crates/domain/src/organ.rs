@@ -202,7 +202,11 @@ fn holds(organ: &TriMesh, vessels: &TriMesh, (opened, openings): (&TriMesh, &[Op
         let at = first_corner(vessels, vessels.triangles[t as usize]);
         return Err(DomainError::VesselsOutside { count: meeting.len(), outside: false, at });
     }
-    let mut outside = Closed::new(organ).outside(vessels);
+    let organ = Closed::new(organ);
+    if openings.is_empty() && organ.holds(vessels) {
+        return Ok(());
+    }
+    let mut outside = organ.outside(vessels);
     outside.retain(|t| openings.iter().all(|opening| !opening.gate.is_near(&vessels.points[t[0] as usize])));
     match outside.first() {
         Some(&t) => {

@@ -336,7 +336,7 @@ pub(crate) fn contacts_with(
     let start = |group: u32| if group == 0 { 0 } else { ends[group as usize - 1] as usize };
     let group = |group: u32| &boxes[start(group)..ends[group as usize] as usize];
     let hull = |i: u32| group(i).iter().fold(Aabb::EMPTY, |sum, (aabb, ..)| sum.union(aabb));
-    let hulls: Vec<Aabb> = (0..ends.len() as u32).map(hull).collect();
+    let hulls: Vec<Aabb> = (0..ends.len() as u32).into_par_iter().with_min_len(BATCH).map(hull).collect();
     let mut batch: Vec<(u32, u32)> = Vec::with_capacity(BATCH);
     let mut is_over = false;
     Bvh::new(&hulls).self_pairs(|p, q| {
