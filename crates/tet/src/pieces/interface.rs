@@ -52,7 +52,7 @@ impl Interface<'_> {
             let mut moves = Self::crowded(&around, pass);
             moves.extend(self.sharp(&around, pass, if pass < SHARP_PASSES { SHARP } else { least }));
             if moves.is_empty() {
-                return self.is_clear(&faces).then(|| self.halves(&faces)).filter(Cut::is_closed);
+                return (self.is_closed(&faces) && self.is_clear(&faces)).then(|| self.halves(&faces));
             }
             moves.sort_unstable_by_key(|(edge, side)| (*edge, side.half()));
             self.change(&moves, pass >= NARROW_PASSES);
@@ -176,6 +176,39 @@ impl Interface<'_> {
         })
     }
 
+    /// True if each edge of a half has two triangles that pass it in opposite directions. Triangles beyond the band lie on the
+    /// side of their neighbours, so only edges of the band and the interface are tested.
+    fn is_closed(&self, faces: &[[u32; 3]]) -> bool {
+        let count = self.band.triangles.len();
+        let mut halves = [faces.to_vec(), faces.iter().map(|&[a, b, c]| [a, c, b]).collect()];
+        for (i, t) in self.band.boxed.triangles[..count].iter().enumerate() {
+            halves[self.side_of(i).half()].push(*t);
+        }
+        let own: Vec<usize> = halves.iter().map(Vec::len).collect();
+        let mut number = vec![NONE; self.surface.points.len()];
+        (0..).zip(&self.band.points).for_each(|(i, &v)| number[v as usize] = i);
+        let mut in_band = vec![false; self.surface.triangles.len()];
+        self.band.triangles.iter().for_each(|&t| in_band[t as usize] = true);
+        for (t, _) in self.surface.triangles.iter().zip(in_band).filter(|(_, in_band)| !in_band) {
+            let side = Side::at(self.plane.distance(&self.surface.points[t[0] as usize]));
+            let local = t.map(|v| number[v as usize]);
+            if local.iter().filter(|&&v| v != NONE).count() > 1 {
+                halves[side.half()].push(local);
+            }
+        }
+        halves.iter().zip(own).all(|(half, own)| {
+            let sides = |(i, &[a, b, c]): (usize, &[u32; 3])| {
+                [[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], a < b, i < own))
+            };
+            let mut all: Vec<([u32; 2], bool, bool)> = half.iter().enumerate().flat_map(sides).collect();
+            all.sort_unstable();
+            all.chunk_by(|x, y| x.0 == y.0).all(|run| {
+                let is_other = run.iter().all(|(.., is_own)| !is_own);
+                is_other || matches!(run, [(_, false, _), (_, true, _)])
+            })
+        })
+    }
+
     /// Surfaces of both halves in the numbers of the region.
     fn halves(&self, faces: &[[u32; 3]]) -> Cut {
         let n = self.surface.points.len() as u32;
@@ -196,19 +229,6 @@ impl Interface<'_> {
         halves[0].extend_from_slice(&faces);
         halves[1].extend(faces.iter().map(|&[a, b, c]| [a, c, b]));
         Cut { points, halves }
-    }
-}
-
-impl Cut {
-    /// True if each edge of a half has two triangles that pass it in opposite directions.
-    fn is_closed(&self) -> bool {
-        self.halves.iter().all(|half| {
-            let turned = |[a, b]: [u32; 2]| ([a.min(b), a.max(b)], a < b);
-            let mut all: Vec<([u32; 2], bool)> =
-                half.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).map(turned).collect();
-            all.sort_unstable();
-            all.chunk_by(|x, y| x.0 == y.0).all(|run| matches!(run, [(_, false), (_, true)]))
-        })
     }
 }
 

@@ -17,11 +17,11 @@ use crate::error::TetError;
 use crate::input;
 use crate::plc::InputKind;
 use crate::progress::{Stage, Watch};
+use anastomesh_mesh::adjacency::vertices_of;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use divide::divide;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A region, divided into pieces.
@@ -45,8 +45,8 @@ pub struct Piece {
 }
 
 impl Pieces {
-    /// Divides the region inside a closed surface that is oriented outwards, until pieces have at most `most` triangles or cannot be divided. Interior
-    /// and sizing are those of the tetrahedralizer, as in [`fill_spaced`].
+    /// Divides the region inside a closed surface that is oriented outwards, until pieces have at most `most` triangles or cannot
+    /// be divided. Interior and sizing are those of the tetrahedralizer, as in [`fill_spaced`].
     ///
     /// # Errors
     /// [`TetError::Cancelled`].
@@ -60,7 +60,7 @@ impl Pieces {
             made.pieces.extend(small);
             let cut = |piece: Piece| Ok((divide(by, &piece.surface, watch)?, piece));
             let cuts: Vec<_> = large.into_par_iter().map(cut).collect::<Result<_, TetError>>()?;
-            open = Vec::new();
+            let mut divided = Vec::new();
             for (cut, mut piece) in cuts {
                 let Some(cut) = cut else {
                     made.pieces.push(piece);
@@ -70,8 +70,10 @@ impl Pieces {
                 made.points.extend_from_slice(&cut.points);
                 piece.numbers.extend(first..made.points.len() as u32);
                 piece.surface.points.extend(cut.points);
-                open.extend(cut.halves.map(|half| piece.part(half)));
+                divided.push((piece, cut.halves));
             }
+            let halves = divided.into_par_iter().map(|(piece, halves)| halves.map(|half| piece.part(half)));
+            open = halves.collect::<Vec<_>>().into_iter().flatten().collect();
         }
         Ok(made)
     }
@@ -85,19 +87,20 @@ impl Piece {
 
     /// Part of a piece with these triangles.
     fn part(&self, mut triangles: Vec<[u32; 3]>) -> Self {
-        let mut used: Vec<u32> = triangles.as_flattened().to_vec();
-        used.sort_unstable();
-        used.dedup();
-        let own: FxHashMap<u32, u32> = used.iter().copied().zip(0..).collect();
-        triangles.as_flattened_mut().iter_mut().for_each(|v| *v = own[v]);
-        let points = used.iter().map(|&v| self.surface.points[v as usize]).collect();
-        let numbers = used.iter().map(|&v| self.numbers[v as usize]).collect();
+        let is_used = vertices_of(&triangles, self.numbers.len());
+        let (mut own, mut points, mut numbers) = (vec![0; is_used.len()], Vec::new(), Vec::new());
+        for v in (0..is_used.len()).filter(|&v| is_used[v]) {
+            own[v] = points.len() as u32;
+            points.push(self.surface.points[v]);
+            numbers.push(self.numbers[v]);
+        }
+        triangles.as_flattened_mut().iter_mut().for_each(|v| *v = own[*v as usize]);
         Self { surface: TriMesh { points, triangles }, numbers }
     }
 }
 
-/// Fills a closed surface that is oriented outwards as [`fill_spaced`] does, in pieces of at most about `most` triangles, on all threads. The result has no
-/// summary.
+/// Fills a closed surface that is oriented outwards as [`fill_spaced`] does, in pieces of at most about `most` triangles, on
+/// all threads. The result has no summary.
 ///
 /// # Errors
 /// See [`fill_spaced`].
