@@ -1,5 +1,7 @@
 //! `anastomesh mesh`: volume mesh of a network.
 
+mod failures;
+
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -24,8 +26,8 @@ use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
 use super::regions::{Lumen, Regions, with_regions};
-use super::run::{failure, remarks};
-use super::stop::{self, Stop};
+use super::run::remarks;
+use super::stop::Stop;
 use super::work::{self, WorkArgs, WorkDir};
 use crate::fidelity::{Along, Changes, Fidelity};
 use crate::pipeline::{Estimate, JointStyle, MeshPlan, RunReport, Shard, Store};
@@ -34,7 +36,7 @@ use crate::report::inlets;
 use crate::report::page::{self, Mark, Section};
 use crate::report::summary::{Summary, forecast};
 use crate::report::verdict::{Verdict, missing};
-use crate::run::{Attempt, Defect, MeshingError, NetworkMesh, Networks, PreparedRun, Run};
+use crate::run::{Attempt, Defect, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_domain::{DomainError, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
@@ -439,52 +441,6 @@ impl Args {
         let stopped = |e: &DomainError| e.is_cancelled() || bars.is_cancelled();
         let failed = |e: DomainError| if stopped(&e) { self.stopped() } else { self.no_regions(&e) };
         Regions::around(&lumen, plan, store, bars).map(Some).map_err(failed)
-    }
-
-    /// Failure to make the regions.
-    fn no_regions(&self, error: &dyn std::fmt::Display) -> Failure {
-        Failure::input(format!("{}: {error}", self.network.network.display()))
-    }
-
-    /// Failure of a run, after its reports.
-    fn explain(&self, error: MeshingError, plan: &MeshPlan, bars: &Bars) -> Failure {
-        let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
-        bars.keep();
-        if let Err(failure) = self.tell_refined(&networks) {
-            return failure;
-        }
-        let paged = self.write_page(plan, &networks, &report, None);
-        if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
-            return failure;
-        }
-        if !self.common.quiet {
-            self.blocks.advise(&report, true);
-        }
-        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
-        Failure::stage(format!("{missing}; --keep-going meshes the rest"))
-    }
-
-    /// Failure of a run before its blocks.
-    fn explain_alone(&self, error: MeshingError) -> Failure {
-        failure(error, &self.network.network, || self.stopped())
-    }
-
-    /// Failure of a stopped run, with the command that continues it.
-    fn stopped(&self) -> Failure {
-        Failure::stopped(self.stopped_text())
-    }
-
-    fn stopped_text(&self) -> String {
-        match &self.work.dir {
-            Some(dir) => {
-                let (dir, command) = (dir.display(), stop::command_line());
-                format!("stopped; finished blocks are kept in {dir}. Continue with\n  {command}")
-            }
-            None => {
-                "stopped; nothing is kept. With --work-dir DIR, finished blocks are kept and the same command continues"
-                    .into()
-            }
-        }
     }
 
     /// Writes the HTML report.

@@ -15,9 +15,9 @@ const IN_MEMORY: usize = 1_000_000;
 const TISSUE_PER_TRIANGLE: f64 = 9.4;
 /// Bytes of memory per tetrahedron of regions that are made in memory, the lumen included.
 const BYTES_PER_TET: f64 = 90.0;
-/// Bytes of memory per triangle of the wall for regions in parts: while shells grow, and while tissue is divided.
-const SHELLS_BYTES_PER_TRIANGLE: f64 = 350.0;
-const TISSUE_BYTES_PER_TRIANGLE: f64 = 350.0;
+/// Bytes of memory per triangle of the wall for regions in parts: the largest need of growing shells, dividing tissue and the
+/// check.
+const BYTES_PER_TRIANGLE: f64 = 380.0;
 
 /// Estimate of a mesh with regions from that of its lumen.
 pub fn with_regions(lumen: &Estimate, plan: &DomainPlan) -> Estimate {
@@ -29,8 +29,7 @@ pub fn with_regions(lumen: &Estimate, plan: &DomainPlan) -> Estimate {
     let of_tissue = if plan.tissue.is_some() { TISSUE_PER_TRIANGLE * lumen.wall } else { 0.0 };
     let tets = of_shells + of_tissue;
     if plan.may_be_in_parts() && lumen.wall > IN_MEMORY as f64 {
-        let per_triangle = if of_tissue > 0.0 { TISSUE_BYTES_PER_TRIANGLE } else { SHELLS_BYTES_PER_TRIANGLE };
-        lumen.with_regions(tets, of_tissue, (per_triangle * lumen.wall) as u64)
+        lumen.with_regions(tets, of_tissue, (BYTES_PER_TRIANGLE * lumen.wall) as u64)
     } else {
         lumen.with_regions(tets, 0.0, (BYTES_PER_TET * (lumen.tets + tets)) as u64)
     }

@@ -26,7 +26,7 @@ pub enum RunError {
     Partition(PartitionError),
     /// Memory or disk space is insufficient.
     #[error(transparent)]
-    TooLarge(#[from] TooLarge),
+    TooLarge(Box<TooLarge>),
     /// Finished blocks cannot be stored or read.
     #[error(transparent)]
     Store(StoreError),
@@ -39,6 +39,12 @@ pub enum RunError {
     /// The run was cancelled. Finished blocks are in the store.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<TooLarge> for RunError {
+    fn from(error: TooLarge) -> Self {
+        Self::TooLarge(Box::new(error))
+    }
 }
 
 impl From<PartitionError> for RunError {

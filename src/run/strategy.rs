@@ -95,6 +95,14 @@ pub(super) struct Failure {
 }
 
 impl Failure {
+    fn is_of_block(&self) -> bool {
+        matches!(&self.error, RunError::TooLarge(error) if matches!(**error, TooLarge::Block { .. }))
+    }
+
+    fn is_of_regions(&self) -> bool {
+        matches!(&self.error, RunError::TooLarge(error) if matches!(**error, TooLarge::Regions { .. }))
+    }
+
     pub(super) fn into_error(self) -> MeshingError {
         match self.error {
             RunError::BlocksFailed(report) => MeshingError::Blocks { report, networks: self.networks },
@@ -143,8 +151,8 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
         }
         Some(Err(failure @ Failure { error: RunError::Cancelled, .. })) => return Err(failure.into_error()),
         // Blocks become smaller only if vessels are lengthened, so that more of them can be cut.
-        Some(Err(failure @ Failure { error: RunError::TooLarge(TooLarge::Block { .. }), .. }))
-            if !meshing.lengthens(networks) =>
+        Some(Err(failure @ Failure { error: RunError::TooLarge(_), .. }))
+            if failure.is_of_regions() || failure.is_of_block() && !meshing.lengthens(networks) =>
         {
             return Err(failure.into_error());
         }

@@ -1,0 +1,59 @@
+//! Failures of `anastomesh mesh`, after the reports that belong to them.
+
+use super::Args;
+use crate::cli::exit::Failure;
+use crate::cli::progress::Bars;
+use crate::cli::run::failure;
+use crate::cli::stop;
+use crate::pipeline::MeshPlan;
+use crate::report::verdict::missing;
+use crate::run::MeshingError;
+use anastomesh_skeleton::NodeId;
+
+impl Args {
+    /// Failure to make the regions.
+    pub(super) fn no_regions(&self, error: &dyn std::fmt::Display) -> Failure {
+        Failure::input(format!("{}: {error}", self.network.network.display()))
+    }
+
+    /// Failure of a run, after its reports.
+    pub(super) fn explain(&self, error: MeshingError, plan: &MeshPlan, bars: &Bars) -> Failure {
+        let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
+        bars.keep();
+        if let Err(failure) = self.tell_refined(&networks) {
+            return failure;
+        }
+        let paged = self.write_page(plan, &networks, &report, None);
+        if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
+            return failure;
+        }
+        if !self.common.quiet {
+            self.blocks.advise(&report, true);
+        }
+        let missing = missing(&report, &|node| networks.names.of(NodeId(node)));
+        Failure::stage(format!("{missing}; --keep-going meshes the rest"))
+    }
+
+    /// Failure of a run before its blocks.
+    pub(super) fn explain_alone(&self, error: MeshingError) -> Failure {
+        failure(error, &self.network.network, || self.stopped())
+    }
+
+    /// Failure of a stopped run, with the command that continues it.
+    pub(super) fn stopped(&self) -> Failure {
+        Failure::stopped(self.stopped_text())
+    }
+
+    pub(super) fn stopped_text(&self) -> String {
+        match &self.work.dir {
+            Some(dir) => {
+                let (dir, command) = (dir.display(), stop::command_line());
+                format!("stopped; finished blocks are kept in {dir}. Continue with\n  {command}")
+            }
+            None => {
+                "stopped; nothing is kept. With --work-dir DIR, finished blocks are kept and the same command continues"
+                    .into()
+            }
+        }
+    }
+}
