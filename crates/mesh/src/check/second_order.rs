@@ -1,11 +1,16 @@
 //! Conditions on second-order meshes.
 
+use super::labels::AREA;
 use super::result::{CheckReport, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Tally};
-use crate::TetMesh;
-use crate::second_order::{SecondOrder, check_jacobians};
+use crate::geometry::Vec3;
+use crate::second_order::{FACE_EDGES, SecondOrder, check_jacobians};
+use crate::{TetMesh, VolumeMesh};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 impl CheckReport {
-    /// Adds the conditions on the midpoints of a second-order mesh to the report on the mesh of its corners.
+    /// Adds the conditions on the midpoints of a second-order mesh to the report on the mesh of its corners. The areas of caps are
+    /// those within their curved rims.
     ///
     /// ```
     /// use anastomesh_mesh::VolumeMesh;
@@ -15,14 +20,14 @@ impl CheckReport {
     ///
     /// let volume = VolumeMesh { mesh: cube_lattice(2), ..VolumeMesh::default() };
     /// let second = SecondOrder::straight(&volume);
-    /// let report = check_tets(&volume.mesh, None).with_second_order(&volume.mesh, &second);
+    /// let report = check_tets(&volume.mesh, None).with_second_order(&volume, &second);
     /// assert_eq!(report.line(Line::PositiveJacobians).map(|line| line.outcome), Some(Outcome::Pass));
     /// ```
     ///
     /// # Panics
     /// If the mesh has no invalid vertex index, and an edge of it has no midpoint.
     #[must_use]
-    pub fn with_second_order(self, mesh: &TetMesh, second: &SecondOrder) -> Self {
+    pub fn with_second_order(self, volume: &VolumeMesh, second: &SecondOrder) -> Self {
         let Self { counts, regions, mut lines, quality, intersections, .. } = self;
         let invalid = [Line::FinitePoints, Line::IndicesInRange];
         let broken = lines.iter().find(|line| line.outcome == Outcome::Fail && invalid.contains(&line.line));
@@ -30,10 +35,42 @@ impl CheckReport {
             Some(line) => {
                 lines.extend(Line::OF_SECOND_ORDER.map(|skipped| LineResult::skipped(skipped, Skipped::Because(line))));
             }
-            None => lines.extend([shared_midpoints(mesh, second), positive_jacobians(mesh, second)]),
+            None => {
+                let mesh = &volume.mesh;
+                lines.extend([shared_midpoints(mesh, second), positive_jacobians(mesh, second)]);
+                let was_checked = |line: &&mut LineResult| matches!(line.outcome, Outcome::Pass | Outcome::Fail);
+                if let Some(areas) = lines.iter_mut().find(|line| line.line == Line::CapArea).filter(was_checked) {
+                    *areas = cap_areas(volume, second);
+                }
+            }
         }
         Self { regions, ..Self::new(counts, lines, quality, intersections) }
     }
+}
+
+/// Compares the areas of caps with those of their discs. Each rim edge e with the offset o adds the area of a parabola, ⅔ |o × e|.
+fn cap_areas(volume: &VolumeMesh, second: &SecondOrder) -> LineResult {
+    let points = &volume.mesh.points;
+    let mut areas: BTreeMap<i32, Vec3> = BTreeMap::new();
+    for (face, &patch) in volume.boundary.iter().zip(&volume.boundary_patch) {
+        let corners = face.map(|v| points[v as usize]);
+        let mut area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])) * 0.5;
+        for [i, j] in FACE_EDGES {
+            let Some(edge) = second.edge_between(face[i], face[j]) else { continue };
+            let offset = second.middles()[edge as usize] - nalgebra::center(&corners[i], &corners[j]);
+            area += offset.cross(&(corners[j] - corners[i])) * (2.0 / 3.0);
+        }
+        *areas.entry(patch).or_default() += area;
+    }
+    let mut tally = Tally::new(Line::CapArea);
+    for (patch, cap) in volume.patches.iter().filter_map(|patch| Some((patch.id, patch.cap?))) {
+        let (found, disc) = (areas.get(&patch).map_or(0.0, Vec3::norm), PI * cap.radius * cap.radius);
+        if !((found - disc).abs() <= AREA * disc) {
+            let position = Some(cap.center.coords.into());
+            tally.add(|| Offender { kind: OffenderKind::Patch, ids: vec![patch.into()], position });
+        }
+    }
+    tally.done()
 }
 
 fn shared_midpoints(mesh: &TetMesh, second: &SecondOrder) -> LineResult {
@@ -75,7 +112,8 @@ mod tests {
             change(&mut mesh);
             let parts = mesh.parts().unwrap();
             let mesh = crate::TetMesh { points: parts.points, tets: parts.tets };
-            let report = check_tets(&mesh, None).with_second_order(&mesh, &parts.second);
+            let volume = VolumeMesh { mesh, ..VolumeMesh::default() };
+            let report = check_tets(&volume.mesh, None).with_second_order(&volume, &parts.second);
             let lines: Vec<Line> = report.failed().map(|failed| failed.line).collect();
             assert_eq!(report.verdict == Verdict::Invalid, !lines.is_empty());
             lines

@@ -2,8 +2,8 @@
 
 use crate::geometry::Vec3;
 
-/// Offset from the midpoint of the chord `e` to the surface, for unit normals `start` and `end` of the surface at the ends of
-/// the chord. Zero if the normals do not describe an arc.
+/// Offset from the midpoint of the chord `e` to the surface. `start` and `end` are unit normals of the surface at the ends of the
+/// chord. Zero if they do not describe an arc.
 ///
 /// On a cylinder or sphere of radius R, let 2θ be the angle between the normals, with the bisector m. Then
 /// start + end = 2 cos θ m. The difference end − start has length 2 sin θ. It has the direction in which the chord runs around

@@ -1,7 +1,7 @@
 //! Check of the Jacobian determinants of a second-order mesh.
 
-use super::SecondOrder;
 use super::jacobian::{Sign, jacobian_above};
+use super::midpoints::SecondOrder;
 use crate::TetMesh;
 use crate::geometry::predicates::orient3d;
 use rayon::prelude::*;

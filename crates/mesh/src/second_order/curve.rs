@@ -1,8 +1,9 @@
 //! Midpoints on curved surfaces, pulled back where an element would be distorted.
 
-use super::SecondOrder;
 use super::edges::Edges;
 use super::jacobian::{Sign, jacobian_above};
+use super::midpoints::SecondOrder;
+use super::surface;
 use crate::VolumeMesh;
 use crate::geometry::{Point3, Vec3};
 use rayon::prelude::*;
@@ -30,8 +31,21 @@ pub struct Curving {
     pub least_scaled: f64,
 }
 
+impl SecondOrder {
+    /// Midpoints of a mesh. Those of labelled faces lie on a smooth surface through the vertices of the faces; caps and other flat
+    /// parts stay flat. Where an element would be distorted, the midpoints of its edges are pulled back. The result does not
+    /// depend on the number of threads.
+    ///
+    /// All tetrahedra must be positive. Each face must be a face of a tetrahedron.
+    pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {
+        let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, volume.mesh.points.len());
+        let offsets = surface::offsets(volume, &edges);
+        curve(volume, edges, offsets)
+    }
+}
+
 /// Places the midpoints of edges at the given offsets from the middles, as far as the elements permit.
-pub(super) fn curve(volume: &VolumeMesh, edges: Edges, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
+fn curve(volume: &VolumeMesh, edges: Edges, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
     let mut state = State {
         volume,
         touched: offsets.iter().map(|offset| *offset != Vec3::zeros()).collect(),

@@ -78,8 +78,8 @@ const fn index() -> [[[usize; 4]; 4]; 4] {
 
 /// Bernstein coefficients of the Jacobian determinant with respect to λ₁, λ₂, λ₃, and a bound of their rounding errors.
 ///
-/// The nodes are four corners and six midpoints ([`TET_EDGES`]). With N(i, j) the node between the corners i and j, and
-/// N(i, i) the corner i, the derivative by λₖ is Σ λⱼ E(k, j), where E(k, j) = 4 (N(k, j) − N(0, j)) − (N(k, k) − N(0, 0)). The coefficient
+/// The nodes are four corners and six midpoints ([`TET_EDGES`]). N(i, j) is the node between the corners i and j, and
+/// N(i, i) the corner i. With E(k, j) = `4 (N(k, j) − N(0, j)) − (N(k, k) − N(0, 0))`, the derivative by λₖ is Σ λⱼ E(k, j). The coefficient
 /// of three corners is the mean of det(E(1, i), E(2, j), E(3, k)) over their orders (i, j, k). It is 6 volumes in a straight element.
 pub(super) fn coefficients(nodes: &[Point3; 10]) -> (Cubic, f64) {
     let mut node = [[nodes[0]; 4]; 4];

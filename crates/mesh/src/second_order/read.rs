@@ -1,7 +1,7 @@
 //! Second-order meshes from elements with node numbers, as files have them.
 
-use super::SecondOrder;
 use super::edges::{Edges, FACE_EDGES, TET_EDGES, edge_key};
+use super::midpoints::SecondOrder;
 use crate::geometry::Point3;
 
 /// Elements with ten nodes and faces with six, in VTK's order.

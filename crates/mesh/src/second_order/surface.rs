@@ -13,8 +13,8 @@ use rayon::prelude::*;
 /// around have this angle.
 const CREASE: f64 = 0.766;
 
-/// Angle between the normals of a face and of its corners, in radians, up to which the face is flat: 32-bit coordinates of planes have
-/// angles up to about 1e-4. The rim of such a face is that far outside of its plane, relative to its offset.
+/// Angle between the normals of a face and of its corners, in radians, up to which the face is flat. 32-bit coordinates of planes
+/// give up to about 1e-4. Rims leave the plane of such a face by at most this share of their offset.
 const FLAT: f64 = 1e-3;
 
 /// Side of a labelled face: the number of the edge, then `3 · face + side`.

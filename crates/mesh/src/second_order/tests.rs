@@ -1,10 +1,10 @@
 //! Second-order meshes of tubes, balls, channels and torn meshes.
 
-use super::*;
+use super::{QuadraticMesh, SecondOrder, check_jacobians, jacobian};
 use crate::adjacency::boundary_faces;
-use crate::geometry::Vec3;
+use crate::geometry::{Point3, Vec3};
 use crate::shapes::{cube_lattice, perturb, sphere_surface, tube_lattice, walled_channel};
-use crate::{Cap, Patch, TetMesh, WALL};
+use crate::{Cap, Patch, TetMesh, VolumeMesh, WALL};
 use proptest::prelude::*;
 
 /// Mesh with a wall and, where `cap` holds for the corners of a face, caps without further data.
@@ -65,6 +65,32 @@ fn midpoints_of_a_tube_lie_on_its_circles() {
             assert_eq!(second.middles()[*node as usize - points.len()].z, points[face[0] as usize].z);
         }
     }
+}
+
+#[test]
+fn balanced_vertices_enclose_the_volume_of_flat_faces() {
+    // Twelve points around, outside of the unit circle, so that the polygon has the area π.
+    let mut given = tube(2, 6, 0.5);
+    let step = std::f64::consts::PI / 6.0;
+    let radius = (step / step.sin()).sqrt();
+    for p in &mut given.mesh.points {
+        (p.x, p.y) = (p.x * radius, p.y * radius);
+    }
+    let before = volume(&given.mesh, &SecondOrder::straight(&given));
+    let through = SecondOrder::curved(&given).0;
+    assert!(volume(&given.mesh, &through) > 1.045 * before);
+    let mut moved = given.clone();
+    moved.mesh.points = SecondOrder::balanced_points(&given);
+    let (second, curving) = SecondOrder::curved(&moved);
+    assert_eq!(curving.pulled, 0);
+    assert!((volume(&moved.mesh, &second) / before - 1.0).abs() < 5e-4);
+    for (p, q) in given.mesh.points.iter().zip(&moved.mesh.points) {
+        let is_outer = p.coords.xy().norm() > 1.0;
+        assert!((q.coords.xy().norm() - 1.0).abs() < 2e-4 || (!is_outer && p == q), "{p} {q}");
+        assert_eq!(p.z, q.z);
+    }
+    let flat = labelled(cube_lattice(3), |_| false);
+    assert_eq!(SecondOrder::balanced_points(&flat), flat.mesh.points);
 }
 
 #[test]
