@@ -5,6 +5,7 @@ use super::seed;
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
 use crate::cli::numbers::{above_zero, number, of_region};
+use crate::cli::order::OrderArgs;
 use crate::cli::page::ReportArgs;
 use anastomesh_mesh::Point3;
 use anastomesh_tet::{Interior, Region, Tetrahedralizer};
@@ -146,6 +147,8 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub layers_in: Vec<i32>,
+    #[command(flatten)]
+    pub order: OrderArgs,
     #[command(flatten)]
     pub report: ReportArgs,
     #[command(flatten)]
