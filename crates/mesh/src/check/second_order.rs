@@ -31,17 +31,14 @@ impl CheckReport {
         let Self { counts, regions, mut lines, quality, intersections, .. } = self;
         let invalid = [Line::FinitePoints, Line::IndicesInRange];
         let broken = lines.iter().find(|line| line.outcome == Outcome::Fail && invalid.contains(&line.line));
-        match broken.map(|line| line.line) {
-            Some(line) => {
-                lines.extend(Line::OF_SECOND_ORDER.map(|skipped| LineResult::skipped(skipped, Skipped::Because(line))));
-            }
-            None => {
-                let mesh = &volume.mesh;
-                lines.extend([shared_midpoints(mesh, second), positive_jacobians(mesh, second)]);
-                let was_checked = |line: &&mut LineResult| matches!(line.outcome, Outcome::Pass | Outcome::Fail);
-                if let Some(areas) = lines.iter_mut().find(|line| line.line == Line::CapArea).filter(was_checked) {
-                    *areas = cap_areas(volume, second);
-                }
+        if let Some(line) = broken.map(|line| line.line) {
+            lines.extend(Line::OF_SECOND_ORDER.map(|skipped| LineResult::skipped(skipped, Skipped::Because(line))));
+        } else {
+            let mesh = &volume.mesh;
+            lines.extend([shared_midpoints(mesh, second), positive_jacobians(mesh, second)]);
+            let was_checked = |line: &&mut LineResult| matches!(line.outcome, Outcome::Pass | Outcome::Fail);
+            if let Some(areas) = lines.iter_mut().find(|line| line.line == Line::CapArea).filter(was_checked) {
+                *areas = cap_areas(volume, second);
             }
         }
         Self { regions, ..Self::new(counts, lines, quality, intersections) }
@@ -65,7 +62,8 @@ fn cap_areas(volume: &VolumeMesh, second: &SecondOrder) -> LineResult {
     let mut tally = Tally::new(Line::CapArea);
     for (patch, cap) in volume.patches.iter().filter_map(|patch| Some((patch.id, patch.cap?))) {
         let (found, disc) = (areas.get(&patch).map_or(0.0, Vec3::norm), PI * cap.radius * cap.radius);
-        if !((found - disc).abs() <= AREA * disc) {
+        let off = (found - disc).abs();
+        if off.is_nan() || off > AREA * disc {
             let position = Some(cap.center.coords.into());
             tally.add(|| Offender { kind: OffenderKind::Patch, ids: vec![patch.into()], position });
         }

@@ -89,11 +89,12 @@ impl Around {
     /// Displacement of the vertex.
     fn shift(&self) -> Vec3 {
         let mean = self.normal / self.area;
-        // Also false for a vertex without curved faces.
-        if !(mean.norm() >= LEAST_NORMAL) {
+        let length = mean.norm();
+        // Not a number for a vertex without curved faces.
+        if length.is_nan() || length < LEAST_NORMAL {
             return Vec3::zeros();
         }
-        let shift = mean * (-self.height / self.area / mean.norm());
+        let shift = mean * (-self.height / self.area / length);
         self.fixed.iter().fold(shift, |rest, fixed| rest - fixed * fixed.dot(&rest))
     }
 }

@@ -83,8 +83,8 @@ const fn index() -> [[[usize; 4]; 4]; 4] {
 /// of three corners is the mean of det(E(1, i), E(2, j), E(3, k)) over their orders (i, j, k). It is 6 volumes in a straight element.
 pub(super) fn coefficients(nodes: &[Point3; 10]) -> (Cubic, f64) {
     let mut node = [[nodes[0]; 4]; 4];
-    for i in 0..4 {
-        node[i][i] = nodes[i];
+    for (i, row) in node.iter_mut().enumerate() {
+        row[i] = nodes[i];
     }
     for (&[i, j], &middle) in TET_EDGES.iter().zip(&nodes[4..]) {
         node[i][j] = middle;
@@ -201,7 +201,8 @@ pub fn jacobian_above(nodes: &[Point3; 10], bound: f64) -> Sign {
             return Sign::Below;
         }
         // A value at the bound stays there in all smaller parts.
-        if part.depth == MAX_DEPTH || at_corners.iter().any(|&value| !(value > bound + error)) {
+        let are_above = at_corners.iter().all(|&value| value > bound + error);
+        if part.depth == MAX_DEPTH || !are_above {
             is_decided = false;
             continue;
         }

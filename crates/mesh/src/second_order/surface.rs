@@ -84,7 +84,7 @@ impl<'a> Surface<'a> {
             if let Some([first, second]) = self.smooth_pair(run) {
                 // The faces run along the edge in opposite directions.
                 for [i, j] in [[0, 1], [1, 0]] {
-                    sets.join(self.corner(first, i), self.corner(second, j));
+                    sets.join(Self::corner(first, i), Self::corner(second, j));
                 }
             }
         }
@@ -110,7 +110,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Corner `3 · face + i` at the start (0) or end (1) of a side.
-    fn corner(&self, side: u32, end: usize) -> u32 {
+    fn corner(side: u32, end: usize) -> u32 {
         side - side % 3 + FACE_EDGES[side as usize % 3][end] as u32
     }
 
@@ -166,7 +166,7 @@ impl<'a> Surface<'a> {
     fn arc(&self, side: u32, plane: Option<Vec3>) -> Vec3 {
         let [a, b] = [0, 1].map(|end| self.points[self.vertex(side, end) as usize]);
         let [m, n] = [0, 1].map(|end| {
-            let normal = self.corners[self.corner(side, end) as usize];
+            let normal = self.corners[Self::corner(side, end) as usize];
             plane.map_or(normal, |plane| {
                 (normal - plane * plane.dot(&normal)).try_normalize(LEAST_PROJECTION).unwrap_or(Vec3::zeros())
             })
@@ -177,7 +177,8 @@ impl<'a> Surface<'a> {
     /// True if the surface of a side is flat at both ends of the side.
     fn is_flat(&self, side: u32) -> bool {
         let face = side as usize / 3;
-        let along = |end: usize| self.normals[face].cross(&self.corners[self.corner(side, end) as usize]).norm() < FLAT;
+        let along =
+            |end: usize| self.normals[face].cross(&self.corners[Self::corner(side, end) as usize]).norm() < FLAT;
         self.is_cap[face] || (along(0) && along(1))
     }
 }

@@ -17,7 +17,7 @@ fn labelled(mesh: TetMesh, cap: impl Fn(&[Point3; 3]) -> bool) -> VolumeMesh {
         Patch { id: 2, name: "inlet".into(), cap: Some(disc) },
     ];
     let boundary_patch = boundary.iter().map(patch).collect();
-    VolumeMesh { boundary_patch, boundary, patches, mesh, ..VolumeMesh::default() }
+    VolumeMesh { mesh, boundary, boundary_patch, patches, ..VolumeMesh::default() }
 }
 
 /// Tube of radius 1 along z whose ends are caps.

@@ -33,13 +33,12 @@ fn mesh_of(arrays: &Arrays) -> Result<MeshFile, NpyError> {
     let tets_10 = if is_second { arrays.indices::<10>(TETS, of_points)? } else { Vec::new() };
     let tets = if is_second { corners(&tets_10) } else { arrays.indices::<4>(TETS, of_points)? };
     let tet_block = arrays.labels(TET_BLOCKS, ("tets.npy", tets.len()))?;
-    let faces_6 = match is_second {
-        true => arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<6>(name, of_points))?,
-        false => Vec::new(),
-    };
-    let boundary = match is_second {
-        true => corners(&faces_6),
-        false => arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<3>(name, of_points))?,
+    let mut faces_6 = Vec::new();
+    let boundary = if is_second {
+        faces_6 = arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<6>(name, of_points))?;
+        corners(&faces_6)
+    } else {
+        arrays.if_there(TRIANGLES, |arrays, name| arrays.indices::<3>(name, of_points))?
     };
     let of_faces = ("triangles.npy", boundary.len());
     let boundary_patch = arrays.labels(TRIANGLE_PATCHES, of_faces)?;
