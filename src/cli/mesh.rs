@@ -138,7 +138,7 @@ fn datum(name: &str) -> Result<Datum, String> {
 
 /// Remark on a second-order mesh whose volume differs from the linear one.
 const UNBALANCED: &str =
-    "vertices on the curved wall would make the mesh invalid: the wall passes outside of the vessels' radius";
+    "vertices on the curved wall would add faults to the mesh: the wall passes outside of the vessels' radius";
 
 /// Facts about a written mesh.
 struct Found<'a> {
@@ -393,7 +393,8 @@ impl Args {
             None => (written, &made.check),
         };
         notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.list().to_vec());
-        let second = bars.during(Stage::Check, || self.order.balanced(written, &notes)).map_err(|e| failed(&e))?;
+        let second =
+            bars.during(Stage::Check, || self.order.balanced(written, check, &notes)).map_err(|e| failed(&e))?;
         let options = options.second_order(second.as_ref().map(|second| &second.midpoints));
         let (written, check): (&dyn MeshSource, _) =
             second.as_ref().map_or((written, check), |second| (&second.corners, &second.check));

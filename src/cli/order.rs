@@ -61,9 +61,14 @@ impl OrderArgs {
         self.is_second().then(|| SecondOrder::curved(volume))
     }
 
-    /// Second-order mesh that encloses the volume of a linear one; `None` for linear elements. If the mesh with moved vertices is
-    /// not valid, vertices stay.
-    pub fn balanced(self, mesh: &dyn MeshSource, notes: &MeshNotes) -> io::Result<Option<SecondOrderMesh>> {
+    /// Second-order mesh that encloses the volume of a linear one; `None` for linear elements. If the mesh with moved vertices has more
+    /// faults than the linear one, which `check` reports, vertices stay.
+    pub fn balanced(
+        self,
+        mesh: &dyn MeshSource,
+        check: &CheckReport,
+        notes: &MeshNotes,
+    ) -> io::Result<Option<SecondOrderMesh>> {
         if !self.is_second() {
             return Ok(None);
         }
@@ -71,7 +76,8 @@ impl OrderArgs {
         let mut moved = given.clone();
         moved.mesh.points = SecondOrder::balanced_points(&given);
         let balanced = SecondOrderMesh::of(moved, notes, true);
-        let is_sound = balanced.check.failed().next().is_none();
+        let faults = |check: &CheckReport| check.failed().map(|failed| failed.count.max(1)).sum::<u64>();
+        let is_sound = faults(&balanced.check) <= faults(check);
         Ok(Some(if is_sound { balanced } else { SecondOrderMesh::of(given, notes, false) }))
     }
 

@@ -48,6 +48,8 @@ pub struct Args {
     /// (.msh) with ghost cells
     #[arg(long, value_name = "N")]
     pub parts: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub order: OrderArgs,
     /// Format of the input, overriding its extension
     #[arg(long, value_name = "FORMAT")]
     pub from: Option<InputFormat>,
@@ -147,8 +149,6 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub layers_in: Vec<i32>,
-    #[command(flatten)]
-    pub order: OrderArgs,
     #[command(flatten)]
     pub report: ReportArgs,
     #[command(flatten)]
