@@ -93,6 +93,15 @@ fn as_a_whole(args: &Args) -> Result<(CheckReport, OpenedMesh), Failure> {
 }
 
 fn of_whole(file: &MeshFile) -> CheckReport {
+    let report = of_corners(file);
+    match &file.second_order {
+        Some(second) => report.with_second_order(&file.volume, second),
+        None => report,
+    }
+}
+
+/// Checks the mesh without midpoints.
+fn of_corners(file: &MeshFile) -> CheckReport {
     let expectation = file.notes.expectation.as_ref();
     if !file.notes.regions.is_empty() {
         return check_regions(&file.volume, &file.notes.regions, expectation);

@@ -26,6 +26,7 @@ use anastomesh_io::surface::{
 use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
 use anastomesh_mesh::units::{counted, tetrahedra};
 use anastomesh_network::directed;
@@ -176,16 +177,36 @@ impl Args {
         if to == FileKind::Surface {
             opened.label_boundary();
         }
-        let (mesh, notes) = (opened.source(), opened.notes());
+        let (mesh, notes) = ((opened.source(), self.kept_midpoints(&opened, to)?), opened.notes());
         if !self.split_regions {
             return Ok((self.write(mesh, notes, to, bars)?, Vec::new()));
         }
-        let regions = write_regions(&self.output, mesh, notes, self.grid.options(), bars);
+        let regions = write_regions(&self.output, mesh.0, notes, self.grid.options(), bars);
         let regions = regions.map_err(|e| failed(&e, bars))?;
         Ok((self.write(mesh, notes, to, bars)?, regions))
     }
 
-    fn write(&self, mesh: &dyn MeshSource, notes: &MeshNotes, to: FileKind, bars: &Bars) -> Result<Written, Failure> {
+    /// Midpoints to write: those of a second-order mesh, if the output can hold them. Warns if it cannot.
+    fn kept_midpoints<'a>(&self, opened: &'a OpenedMesh, to: FileKind) -> Result<Option<&'a SecondOrder>, Failure> {
+        let Some(second) = opened.second_order() else { return Ok(None) };
+        let divides = self.format.prisms || self.format.parts.is_some();
+        if to == FileKind::Mesh && !divides && self.format.of(&self.output)?.has_second_order() {
+            return Ok(Some(second));
+        }
+        log::warning(&format!(
+            "{}: midpoints of second-order elements left out: the output is linear",
+            self.output.display()
+        ));
+        Ok(None)
+    }
+
+    fn write(
+        &self,
+        (mesh, second): (&dyn MeshSource, Option<&SecondOrder>),
+        notes: &MeshNotes,
+        to: FileKind,
+        bars: &Bars,
+    ) -> Result<Written, Failure> {
         if to == FileKind::Mesh {
             let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
             let options = WriteOptions::default()
@@ -194,6 +215,7 @@ impl Args {
                 .grid(self.grid.options())
                 .prisms(self.format.prisms)
                 .parts(self.format.parts)
+                .second_order(second)
                 .remark(&remark as &dyn Fn(&str));
             write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
             let SourceCounts { points, tets, boundary } = mesh.counts();
@@ -213,7 +235,7 @@ impl Args {
             write_surface(&self.output, &mesh).map_err(|e| failed(&e, bars))?;
             return Ok(Written::Surface { points: mesh.points.len(), triangles: mesh.triangles.len() });
         }
-        self.write(&boundary_of(mesh), &MeshNotes::default(), FileKind::Surface, bars)
+        self.write((&boundary_of(mesh), None), &MeshNotes::default(), FileKind::Surface, bars)
     }
 
     fn convert_network(&self) -> Result<Written, Failure> {

@@ -18,7 +18,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_skeleton::NodeId;
 
 /// Options that need a lumen.
-const NOT_EMBEDDED: [&str; 28] = [
+const NOT_EMBEDDED: [&str; 29] = [
     "annulus",
     "as_is",
     "core",
@@ -32,6 +32,7 @@ const NOT_EMBEDDED: [&str; 28] = [
     "joint",
     "keep_going",
     "layers",
+    "order",
     "prisms",
     "refine",
     "refined",

@@ -7,7 +7,7 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 68] = [
+const RARE: [&str; 69] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
@@ -44,6 +44,7 @@ const RARE: [&str; 68] = [
     "max-radius-edge",
     "max-tets",
     "metrics",
+    "order",
     "parts",
     "plot",
     "prisms",

@@ -13,6 +13,7 @@ use anastomesh_io::npy;
 use anastomesh_io::surface::SurfaceFormat;
 use anastomesh_io::volume::{MeshFile, MeshFormat, MeshNotes, VtuPieces, VtuPiecesError, read_mesh};
 use anastomesh_mesh::adjacency::boundary_faces;
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{Patch, TetMesh, TriMesh, VolumeMesh, WALL};
 
@@ -95,6 +96,14 @@ impl OpenedMesh {
         match self {
             Self::Pieces(pieces) => pieces,
             Self::Whole(file) => &file.volume,
+        }
+    }
+
+    /// Midpoints of a second-order mesh.
+    pub fn second_order(&self) -> Option<&SecondOrder> {
+        match self {
+            Self::Pieces(_) => None,
+            Self::Whole(file) => file.second_order.as_ref(),
         }
     }
 

@@ -21,6 +21,7 @@ use super::limits::{self, BlockPlace};
 use super::log;
 use super::network::NetworkArgs;
 use super::numbers::number;
+use super::order::OrderArgs;
 use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
@@ -48,6 +49,7 @@ use anastomesh_mesh::check::{CheckReport, Expectation};
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
+use anastomesh_mesh::second_order::Curving;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::RefineReport;
@@ -63,6 +65,8 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     format: FormatArgs,
+    #[command(flatten, next_help_heading = "Output")]
+    order: OrderArgs,
     #[command(flatten)]
     blocks: BlockArgs,
     /// Ratio of edge lengths on the axis to those at the wall: 0.5 to 4 (default: 1; with `--stretch S` and no layers,
@@ -134,12 +138,17 @@ fn datum(name: &str) -> Result<Datum, String> {
     Datum::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| format!("known arrays: {}", known()))
 }
 
+/// Remark on a second-order mesh whose volume differs from the linear one.
+const UNBALANCED: &str =
+    "vertices on the curved wall would add faults to the mesh: the wall passes outside of the vessels' radius";
+
 /// Facts about a written mesh.
 struct Found<'a> {
     mesh: &'a dyn MeshSource,
     network: &'a Skeleton,
     check: &'a CheckReport,
     shells: Option<&'a ShellsReport>,
+    midpoints: Option<&'a Curving>,
     fidelity: Option<&'a Fidelity>,
     changes: &'a Changes,
     caps: Option<&'a Caps>,
@@ -163,6 +172,8 @@ struct Output<'a> {
     check: Option<&'a CheckReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shells: Option<&'a ShellsReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_order: Option<&'a Curving>,
     fidelity: Option<&'a Fidelity>,
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<&'a Changes>,
@@ -201,6 +212,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.format.parts.is_some() && !domain.is_plain() && format != MeshFormat::Pvtu {
         return Err(Failure::usage("--parts with regions around the lumen needs .pvtu"));
     }
+    args.order.check(Some(format), &args.besides_order())?;
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     args.certificate.ensure_writable(format)?;
@@ -251,6 +263,16 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
+    /// Options that do not combine with second-order elements, and whether they are given.
+    fn besides_order(&self) -> [(&'static str, bool); 4] {
+        [
+            ("--prisms", self.format.prisms),
+            ("--parts", self.format.parts.is_some()),
+            ("--cells tets", self.grid.options().tets_alone),
+            ("--split-regions", self.domain.splits()),
+        ]
+    }
+
     /// Options of an embedding.
     fn embedding(&self) -> EmbedRun<'_> {
         EmbedRun {
@@ -375,6 +397,14 @@ impl Args {
             None => (written, &made.check),
         };
         notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.list().to_vec());
+        let second =
+            bars.during(Stage::Check, || self.order.balanced(written, check, &notes)).map_err(|e| failed(&e))?;
+        let options = options.second_order(second.as_ref().map(|second| &second.midpoints));
+        let (written, check): (&dyn MeshSource, _) =
+            second.as_ref().map_or((written, check), |second| (&second.corners, &second.check));
+        if second.as_ref().is_some_and(|second| !second.is_balanced) {
+            bars.note(UNBALANCED);
+        }
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         let mut parts = Vec::new();
@@ -401,6 +431,7 @@ impl Args {
             network: &made.network,
             check,
             shells: domain.as_ref().and_then(Regions::shells),
+            midpoints: second.as_ref().map(|second| &second.curving),
             fidelity: made.fidelity.as_ref(),
             changes: &made.changes,
             caps: made.caps.as_ref(),
@@ -509,7 +540,8 @@ impl Args {
     fn typed(&self, is_refined: bool) -> String {
         let core = self.core.map_or_else(String::new, |core| format!(" --core {core}"));
         let [layers, regions] = [self.layers.typed(), self.domain.typed()];
-        format!("mesh {}{core}{layers}{regions}", self.blocks.typed(is_refined))
+        let order = self.order.typed();
+        format!("mesh {}{core}{layers}{regions}{order}", self.blocks.typed(is_refined))
     }
 
     /// Writes the refined network, if requested: the network as given if that is meshed.
@@ -540,6 +572,7 @@ impl Args {
     ) -> Result<(), Failure> {
         let check = found.map(|found| found.check);
         let shells = found.and_then(|found| found.shells);
+        let midpoints = found.and_then(|found| found.midpoints);
         let fidelity = found.and_then(|found| found.fidelity);
         let changes = found.map(|found| found.changes);
         let (attempts, kept) = found.map_or((&[][..], 0), |found| found.attempts);
@@ -557,6 +590,7 @@ impl Args {
                 run,
                 check,
                 shells,
+                second_order: midpoints,
                 fidelity,
                 changes,
                 attempts,
@@ -586,6 +620,7 @@ impl Args {
             name: &name,
             check,
             shells,
+            midpoints,
             fidelity,
             changes,
             ended: ended(&files),

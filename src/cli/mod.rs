@@ -32,6 +32,7 @@ mod mesh;
 mod network;
 mod network_flow;
 mod numbers;
+mod order;
 mod page;
 mod picture;
 mod prepare;

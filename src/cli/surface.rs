@@ -173,6 +173,7 @@ impl Args {
             name: &name,
             check,
             shells: None,
+            midpoints: None,
             fidelity: None,
             changes: made.map(|made| &made.changes),
             ended: ended(files),

@@ -12,6 +12,7 @@ pub mod plot;
 pub mod prepare;
 pub mod refine;
 pub mod rows;
+pub mod second_order;
 pub mod summary;
 pub mod tetrahedralize;
 pub mod verdict;

@@ -1,12 +1,14 @@
 //! Short summary of a run: input, mesh, fidelity, validity, output files, time.
 
 use super::rows::{Ended, row};
+use super::second_order::of_midpoints;
 use crate::fidelity::{Changes, Fidelity};
 use crate::pipeline::{Forecast, RunReport, named};
 use crate::run::Attempt;
 use anastomesh_domain::ShellsReport;
 use anastomesh_mesh::check::text::{faults, region_sizes, shape, sizes, tally};
 use anastomesh_mesh::check::{CheckReport, RegionCounts};
+use anastomesh_mesh::second_order::Curving;
 use anastomesh_mesh::units::{bytes_of, counted, digits, grouped, percent, place, rounded, seconds_of};
 use anastomesh_network::{NameOf, RefineReport};
 use std::fmt::{self, Write as _};
@@ -29,6 +31,8 @@ pub struct Summary<'a> {
     pub check: Option<&'a CheckReport>,
     /// Thickness of shells around the lumen; `None` without any.
     pub shells: Option<&'a ShellsReport>,
+    /// Midpoints of second-order elements; `None` for linear ones.
+    pub midpoints: Option<&'a Curving>,
     pub fidelity: Option<&'a Fidelity>,
     /// Changes of the network; `None` without a mesh.
     pub changes: Option<&'a Changes>,
@@ -52,6 +56,9 @@ impl fmt::Display for Summary<'_> {
         }
         if let Some(shells) = self.shells {
             out.write_str(&row("shells", &of_shells(shells)))?;
+        }
+        if let Some(midpoints) = self.midpoints {
+            out.write_str(&of_midpoints(midpoints))?;
         }
         out.write_str(&fidelity_rows(self.fidelity, self.changes, self.name))?;
         out.write_str(&self.ended.rows(&self.run.stages))?;
@@ -219,7 +226,19 @@ mod tests {
     fn summary<'a>(run: &'a RunReport, check: Option<&'a CheckReport>, ended: Ended) -> Summary<'a> {
         let name: NameOf = &|node| (node + 1).to_string();
         let (refine, fidelity, changes) = (None, None, None);
-        Summary { run, refine, attempts: (&[], 0), name, check, shells: None, fidelity, changes, ended, listed: false }
+        Summary {
+            run,
+            refine,
+            attempts: (&[], 0),
+            name,
+            check,
+            shells: None,
+            midpoints: None,
+            fidelity,
+            changes,
+            ended,
+            listed: false,
+        }
     }
 
     fn run() -> RunReport {

@@ -1,10 +1,12 @@
 //! Report of a tetrahedralization, as text and JSON.
 
 use super::rows::{Ended, row};
+use super::second_order::of_midpoints;
 use super::verdict::Verdict;
 use crate::pipeline::StageTime;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::quality::{TetQuality, dihedral_range, volume6};
+use anastomesh_mesh::second_order::Curving;
 use anastomesh_mesh::units::{counted, digits, grouped, tetrahedra};
 use anastomesh_mesh::{Bounds, face_key};
 use anastomesh_mesh::{TET_FACES, TetMesh};
@@ -304,6 +306,9 @@ pub struct TetReport {
     /// Report of layers, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<LayerReport>,
+    /// Midpoints of second-order elements, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub second_order: Option<Curving>,
     /// Requested bounds.
     pub bounds: Vec<BoundResult>,
     /// Requested edge length that the input prevents.
@@ -468,6 +473,7 @@ impl TetReport {
         }
         out.push_str(&self.layers.as_ref().map_or_else(String::new, LayerReport::text));
         self.write_bounds(&mut out);
+        out += &self.second_order.as_ref().map_or_else(String::new, of_midpoints);
         if all {
             let times: Vec<String> = self.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
             out += &row("stages", &times.join(", "));

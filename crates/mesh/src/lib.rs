@@ -16,6 +16,7 @@
 //! | [`repair`], [`facets`] | surfaces corrected; polygons with holes cut into triangles |
 //! | [`source`], [`boundary`] | meshes and boundaries that are read a part at a time |
 //! | [`adjacency`], [`faces`], [`stacks`], [`relabel`], [`beside`], [`region`] | neighbours, faces, prisms of layers, labels, values beside a mesh, regions |
+//! | [`second_order`] | midpoints of edges on curved surfaces, Jacobian determinants |
 //! | [`smooth`], [`shapes`] | smoothing; spheres, tubes and other shapes |
 //! | [`geometry`], [`bits`] | predicates, intersections, distances, search trees; bits of numbers |
 //! | [`progress`], [`units`] | progress and cancellation; numbers for people |
@@ -47,6 +48,7 @@ pub mod quality;
 pub mod region;
 pub mod relabel;
 pub mod repair;
+pub mod second_order;
 mod setters;
 pub mod shapes;
 pub mod smooth;

@@ -5,6 +5,7 @@ use super::seed;
 use crate::cli::common::Common;
 use crate::cli::layers::LayerArgs;
 use crate::cli::numbers::{above_zero, number, of_region};
+use crate::cli::order::OrderArgs;
 use crate::cli::page::ReportArgs;
 use anastomesh_mesh::Point3;
 use anastomesh_tet::{Interior, Region, Tetrahedralizer};
@@ -47,6 +48,8 @@ pub struct Args {
     /// (.msh) with ghost cells
     #[arg(long, value_name = "N")]
     pub parts: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub order: OrderArgs,
     /// Format of the input, overriding its extension
     #[arg(long, value_name = "FORMAT")]
     pub from: Option<InputFormat>,

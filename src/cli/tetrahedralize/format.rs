@@ -134,6 +134,14 @@ impl Target {
         matches!(self, Self::File(path) if MeshFormat::of(path).is_ok_and(MeshFormat::has_parts))
     }
 
+    /// Format of a single file; `None` for other targets.
+    pub fn file_format(&self) -> Option<MeshFormat> {
+        match self {
+            Self::File(path) => MeshFormat::of(path).ok(),
+            Self::Family(_) | Self::Stream(_) => None,
+        }
+    }
+
     /// Checks that no input file is overwritten.
     pub fn ensure_apart(&self, input: &[PathBuf]) -> Result<(), Failure> {
         let base = match self {

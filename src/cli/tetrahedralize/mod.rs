@@ -40,6 +40,7 @@ use anastomesh_tet::{Boundary, LeftOut as LeftOutIds, TetError, Tetrahedralizati
 pub use args::Args;
 use format::{InputFormat, Target, is_stream};
 use input::Input;
+use output::MeshParts;
 use plan::TetPlan;
 use watch::{Listener, Watch};
 
@@ -61,6 +62,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     };
     if args.parts.is_some() && !target.as_ref().is_some_and(Target::has_parts) {
         return Err(Failure::usage(NO_PARTS));
+    }
+    if let Some(target) = &target {
+        args.order.check(target.file_format(), &[("--parts", args.parts.is_some())])?;
     }
     plan::ensure_fits(&plan, args, target.as_ref())?;
     args.report.ensure_writable()?;
@@ -111,9 +115,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         input.leave_out(&made.summary.left_out.segments);
         let layers = std::mem::take(&mut made.layers);
         let volume = output::volume(made, &input);
-        let written = watch.time("write", || {
-            pool.install(|| output::write((&target, args.parts), (&volume, &layers), &input, &plan, &listener))
-        })?;
+        let midpoints = watch.time("write", || pool.install(|| args.order.midpoints(&volume)));
+        report.second_order = midpoints.as_ref().map(|midpoints| midpoints.1);
+        let mesh =
+            MeshParts { volume: &volume, layers: &layers, second_order: midpoints.as_ref().map(|found| &found.0) };
+        let written = watch
+            .time("write", || pool.install(|| output::write((&target, args.parts), mesh, &input, &plan, &listener)))?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
         pool.install(|| write_page(args, &plan, &report, &volume))?;
     }

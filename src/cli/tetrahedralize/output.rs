@@ -13,6 +13,7 @@ use anastomesh_io::tetgen::{Extent, MeshFamily};
 use anastomesh_io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::region::{NamedRegion, label_faces};
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::{Patch, VolumeMesh};
 use anastomesh_tet::Tetrahedralization;
 
@@ -49,10 +50,20 @@ pub fn volume(made: Tetrahedralization, input: &Input) -> VolumeMesh {
     volume
 }
 
+/// Mesh to write.
+#[derive(Clone, Copy)]
+pub struct MeshParts<'a> {
+    pub volume: &'a VolumeMesh,
+    /// Layer of each tetrahedron.
+    pub layers: &'a [i32],
+    /// Midpoints of second-order elements.
+    pub second_order: Option<&'a SecondOrder>,
+}
+
 /// Writes the mesh, in parts on request; returns the files.
 pub fn write(
     (target, parts): (&Target, Option<NonZeroUsize>),
-    (volume, layers): (&VolumeMesh, &[i32]),
+    MeshParts { volume, layers, second_order }: MeshParts,
     input: &Input,
     plan: &TetPlan,
     progress: &dyn Progress,
@@ -69,7 +80,7 @@ pub fn write(
     };
     match target {
         Target::File(path) => {
-            let options = WriteOptions::default().parts(parts).layers(layers);
+            let options = WriteOptions::default().parts(parts).layers(layers).second_order(second_order);
             write_mesh_with(&options, path, volume, &notes, progress).map_err(|e| failed(&e))?;
             Ok(vec![path.clone()])
         }

@@ -93,6 +93,11 @@ impl MeshFormat {
         matches!(self, Self::OpenFoam | Self::Pvtu | Self::Msh)
     }
 
+    /// True if second-order meshes can be written.
+    pub fn has_second_order(self) -> bool {
+        matches!(self, Self::Vtu | Self::Msh | Self::Msh2 | Self::Npy)
+    }
+
     /// True if a mesh is a folder.
     pub(super) fn is_folder(self) -> bool {
         matches!(self, Self::OpenFoam | Self::SimVascular | Self::Npy)

@@ -19,6 +19,9 @@ mod parts;
 mod pvtu;
 mod read;
 mod regions;
+mod second;
+#[cfg(test)]
+mod second_tests;
 mod simvascular;
 #[cfg(test)]
 mod tests;
@@ -30,6 +33,7 @@ pub use error::MeshFileError;
 
 /// Contents of [`MeshFileError`]: the faults of each format.
 pub mod faults {
+    pub use super::content::SecondOrderFault;
     pub use super::error::MeshFault;
     pub use super::medit::MeditFault;
     pub use super::msh::MshFault;

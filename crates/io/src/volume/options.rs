@@ -2,6 +2,7 @@
 
 use super::format::MeshFormat;
 use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::second_order::SecondOrder;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,8 @@ pub struct WriteOptions<'a> {
     /// Number of parts for parallel solvers: folders of processors beside an `OpenFOAM` mesh, pieces of a PVTU mesh, and
     /// partitions of an MSH 4.1 mesh. Other formats have none ([`PartsError`](super::PartsError)).
     pub parts: Option<NonZeroUsize>,
+    /// Midpoints of the mesh, which make it a second-order mesh: VTU, MSH and `NumPy` only, neither with prisms nor in parts.
+    pub second_order: Option<&'a SecondOrder>,
     /// Receiver of remarks on a solver case, such as a reason why it is not expected to converge.
     pub remark: Option<&'a dyn Fn(&str)>,
 }
@@ -37,6 +40,7 @@ anastomesh_mesh::setters!(WriteOptions<'a> {
     layers: impl Into<Option<&'a [i32]>>,
     prisms: bool,
     parts: impl Into<Option<NonZeroUsize>>,
+    second_order: impl Into<Option<&'a SecondOrder>>,
     remark: impl Into<Option<&'a dyn Fn(&str)>>,
 });
 

@@ -7,7 +7,7 @@ use super::options::{GridOptions, WriteOptions, boundary_beside};
 use super::parts::PartsError;
 use super::pvtu::{PieceFolder, Pieces};
 use super::vtu::MixedGrid;
-use super::{medit, msh, npy, openfoam, pvtu, simvascular, vtu};
+use super::{medit, msh, npy, openfoam, pvtu, second, simvascular, vtu};
 use crate::file::{Asked, AtomicFile, FileError, write_whole};
 use crate::tetgen::MeshFamily;
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
@@ -86,6 +86,11 @@ pub fn write_mesh_with(
         let error = PartsError::Content { what: "prisms", instead: "write tetrahedra, or an OpenFOAM case" };
         return Err(FileError::write(path)(error.into()));
     }
+    if let Some(second) = options.second_order {
+        let is_plain = format.has_second_order() && options.parts.is_none() && !options.prisms;
+        let fits = if is_plain { second::ensure_fits(mesh, second) } else { Err(no_second_order()) };
+        fits.map_err(FileError::write(path))?;
+    }
     let write = || match format {
         MeshFormat::Vtu | MeshFormat::Msh | MeshFormat::Msh2 if options.prisms => {
             write_prisms(path, format, mesh, notes, grid, progress)
@@ -119,11 +124,12 @@ pub fn write_mesh_with(
                     Err(PartsError::Content { what: "values", instead: "write .pvtu" }.into())
                 }
                 Some(parts) => msh::write_parts(out, mesh, notes, parts),
-                None => msh::write(out, mesh, notes, options.values),
+                None => msh::write(out, mesh, notes, (options.values, options.second_order)),
             }
         }),
         MeshFormat::Msh2 => {
-            write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, options.values))
+            let beside = (options.values, options.second_order);
+            write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, beside))
         }
         format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
@@ -135,6 +141,12 @@ pub fn write_mesh_with(
         }
         _ => write().map_err(FileError::write(path)),
     }
+}
+
+/// Error of a second-order mesh in another format.
+fn no_second_order() -> io::Error {
+    let text = "second-order meshes are written to .vtu, .msh, .msh2 and .npyd, neither with prisms nor in parts";
+    io::Error::new(io::ErrorKind::Unsupported, text)
 }
 
 /// Writes the prisms of layers as whole cells. The mesh is held in memory.
@@ -239,8 +251,8 @@ pub(super) fn write_format(
 ) -> io::Result<()> {
     match format {
         MeshFormat::Vtu => vtu::write(out, mesh, notes, &WriteOptions::default()),
-        MeshFormat::Msh => msh::write(out, mesh, notes, None),
-        MeshFormat::Msh2 => msh::write_2(out, mesh, notes, None),
+        MeshFormat::Msh => msh::write(out, mesh, notes, (None, None)),
+        MeshFormat::Msh2 => msh::write_2(out, mesh, notes, (None, None)),
         MeshFormat::Medit => medit::write(out, mesh, notes),
         MeshFormat::Tetgen | MeshFormat::Pvtu | MeshFormat::Npy | MeshFormat::OpenFoam | MeshFormat::SimVascular => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a mesh of this format is several files"))

@@ -18,7 +18,7 @@ const ROUNDED: f64 = 0.501 * f32::EPSILON as f64;
 /// Maximum distance of a cap's centre from its node, in radii.
 const OFF_CENTRE: f64 = 0.1;
 /// Maximum relative difference of a cap's area from that of the disc.
-const AREA: f64 = 0.05;
+pub(super) const AREA: f64 = 0.05;
 
 /// Compares the labelled triangles with the faces of the boundary.
 pub(super) fn labels_match(volume: &VolumeMesh, faces: &[[u32; 3]]) -> LineResult {

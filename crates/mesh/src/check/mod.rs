@@ -7,6 +7,8 @@
 //!
 //! In a mesh with regions, the expectation applies to the region named `lumen`, and every region has a boundary like that
 //! of a mesh. Every face between two regions is labelled.
+//!
+//! In a second-order mesh, these conditions apply to the mesh of the corners ([`CheckReport::with_second_order`]).
 
 mod cells;
 mod labels;
@@ -15,6 +17,7 @@ pub mod parts;
 mod passes;
 mod regions;
 mod result;
+mod second_order;
 mod surface;
 mod surfaces;
 pub mod text;

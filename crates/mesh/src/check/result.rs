@@ -77,6 +77,10 @@ pub enum Line {
     InterfaceSides,
     /// Every face between two regions is labelled once, oriented out of the region with the smaller id.
     InterfacesLabelled,
+    /// Every edge of a second-order mesh has one midpoint, which all its elements and faces share.
+    SharedMidpoints,
+    /// Every second-order element has a positive Jacobian determinant everywhere.
+    PositiveJacobians,
 }
 
 impl Line {
@@ -89,7 +93,10 @@ impl Line {
         Self::InterfacesLabelled,
     ];
 
-    /// All conditions on a mesh without regions, in order.
+    /// Conditions on a second-order mesh, in order. Other meshes have none of them.
+    pub const OF_SECOND_ORDER: [Self; 2] = [Self::SharedMidpoints, Self::PositiveJacobians];
+
+    /// All conditions on a linear mesh without regions, in order.
     pub const ALL: [Self; 24] = [
         Self::NotEmpty,
         Self::FinitePoints,
@@ -154,6 +161,8 @@ impl Line {
             Self::RegionIntersections => "the boundary of no region intersects itself",
             Self::InterfaceSides => "every interface face lies between its two regions",
             Self::InterfacesLabelled => "every face between two regions is labelled as interface",
+            Self::SharedMidpoints => "every edge has one midpoint",
+            Self::PositiveJacobians => "every element has a positive Jacobian determinant",
         }
     }
 
@@ -228,6 +237,11 @@ impl Line {
             Self::InterfacesLabelled => [
                 "1 face between two regions is not labelled as interface, or turned",
                 "{} faces between two regions are not labelled as interface, or turned",
+            ],
+            Self::SharedMidpoints => ["1 edge has several midpoints", "{} edges have several midpoints"],
+            Self::PositiveJacobians => [
+                "1 element has a Jacobian determinant that is not positive everywhere",
+                "{} elements have a Jacobian determinant that is not positive everywhere",
             ],
         }
     }

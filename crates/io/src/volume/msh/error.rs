@@ -1,9 +1,14 @@
 //! Errors of MSH files.
 
+use crate::volume::content::SecondOrderFault;
+
 /// Errors of a tetrahedral mesh in Gmsh's MSH 4.1 or 2.2.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MshFault {
+    /// Second-order elements are invalid.
+    #[error(transparent)]
+    SecondOrder(#[from] SecondOrderFault),
     /// A required section is missing.
     #[error("'{what}' is missing: is the file truncated?")]
     Missing {
@@ -32,7 +37,7 @@ pub enum MshFault {
         version: String,
     },
     /// An element is neither a tetrahedron nor a triangle.
-    #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
+    #[error("cell {cell} is of type {kind}; only tetrahedra and triangles of first or second order are supported")]
     UnsupportedCell {
         /// Element type, as a number of the format.
         kind: i64,

@@ -1,10 +1,14 @@
 //! Gmsh formats MSH 4.1 (binary) with one volume, one surface and physical group per patch, and MSH 2.2 (text).
 //!
+//! Second-order elements have types 11 and 9. Gmsh swaps the last two nodes of VTK's ten-node tetrahedron. Midpoints are nodes of the
+//! volume, also on the boundary.
+//!
 //! Node and element tags count from 1 in the order of the mesh (tetrahedra first), so that reading restores the order.
 //! Additional values become node and element data; tags are then in file order. Data for later checks are in a custom
 //! section, which Gmsh and other programs ignore.
 
 mod cursor;
+mod elements;
 mod error;
 mod mixed;
 mod names;

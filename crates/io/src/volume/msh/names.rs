@@ -11,6 +11,13 @@ pub(super) const MSH_QUAD: i32 = 3;
 pub(super) const MSH_TETRA: i32 = 4;
 pub(super) const MSH_PRISM: i32 = 6;
 pub(super) const MSH_PYRAMID: i32 = 7;
+pub(super) const MSH_LINE_3: i32 = 8;
+pub(super) const MSH_TRIANGLE_6: i32 = 9;
+pub(super) const MSH_TETRA_10: i32 = 11;
+
+/// Places of Gmsh's nodes of a ten-node tetrahedron in VTK's order, and the reverse. Gmsh has the edges 01, 12, 02, 03, 23, 13; VTK swaps the
+/// last two.
+pub(super) const TETRA_10_ORDER: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
 
 /// Name of the volume's physical group.
 pub(super) const VOLUME_NAME: &str = "lumen";

@@ -2,9 +2,12 @@
 
 use super::cursor::{MshCursor, Version};
 use super::error::MshFault;
-use super::names::{Extra, MSH_PRISM, MSH_PYRAMID, MSH_QUAD, MSH_TETRA, MSH_TRIANGLE, SECTION};
+use super::names::{
+    Extra, MSH_LINE_3, MSH_PRISM, MSH_PYRAMID, MSH_QUAD, MSH_TETRA, MSH_TETRA_10, MSH_TRIANGLE, MSH_TRIANGLE_6,
+    SECTION, TETRA_10_ORDER,
+};
 use crate::patches::{distinct, usual_name};
-use crate::volume::content::MeshFile;
+use crate::volume::content::{MeshFile, separate_midpoints};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::region::{NamedRegion, label_faces};
 use anastomesh_mesh::stacks::Polyhedra;
@@ -12,7 +15,7 @@ use anastomesh_mesh::{Cap, Patch};
 use rustc_hash::FxHashMap;
 
 /// Reads a mesh from the bytes of a `.msh` file, version 4.1 or 2.2 as text. Prisms, pyramids and quadrilaterals are
-/// split into tetrahedra and triangles; points and lines are skipped. The label of a triangle is the first physical group of its surface.
+/// split into tetrahedra and triangles; points and lines are skipped. Second-order elements are read if all are. The label of a triangle is the first physical group of its surface.
 ///
 /// # Errors
 /// The file is invalid or incomplete, or has other elements.
@@ -68,6 +71,9 @@ struct MshSections {
     prisms: Vec<(u64, [u64; 6])>,
     pyramids: Vec<(u64, [u64; 5])>,
     quads: Vec<(u64, [u64; 4])>,
+    /// Nodes of second-order elements by their tags, in VTK's order. Their corners are among tetrahedra and triangles.
+    tets_10: Vec<(u64, [u64; 10])>,
+    triangles_6: Vec<(u64, [u64; 6])>,
     extra: Extra,
 }
 
@@ -143,7 +149,7 @@ impl MshSections {
         let [blocks, ..]: [u64; 4] = cursor.sizes()?;
         for _ in 0..blocks {
             let (_dimension, entity, kind) = (cursor.int()?, cursor.int()?, cursor.int()?);
-            let groups = if matches!(kind, MSH_TETRA | MSH_PRISM | MSH_PYRAMID) {
+            let groups = if matches!(kind, MSH_TETRA | MSH_TETRA_10 | MSH_PRISM | MSH_PYRAMID) {
                 &self.group_of_volume
             } else {
                 &self.group_of_surface
@@ -175,7 +181,7 @@ impl MshSections {
                 let value = cursor.int()?;
                 group = if i == 0 { value } else { group };
             }
-            if matches!(kind, MSH_TRIANGLE | MSH_QUAD) {
+            if matches!(kind, MSH_TRIANGLE | MSH_TRIANGLE_6 | MSH_QUAD) {
                 // What a reader of version 4.1 knows from the entities.
                 self.group_of_surface.insert(group, group);
             }
@@ -189,6 +195,16 @@ impl MshSections {
         match kind {
             MSH_TRIANGLE => self.triangles.push((tag, cursor.sizes()?, group)),
             MSH_TETRA => self.tets.push((tag, cursor.sizes()?, group)),
+            MSH_TETRA_10 => {
+                let nodes: [u64; 10] = cursor.sizes()?;
+                self.tets.push((tag, [nodes[0], nodes[1], nodes[2], nodes[3]], group));
+                self.tets_10.push((tag, TETRA_10_ORDER.map(|place| nodes[place])));
+            }
+            MSH_TRIANGLE_6 => {
+                let nodes: [u64; 6] = cursor.sizes()?;
+                self.triangles.push((tag, [nodes[0], nodes[1], nodes[2]], group));
+                self.triangles_6.push((tag, nodes));
+            }
             MSH_PRISM => {
                 self.prisms.push((tag, cursor.sizes()?));
                 self.tets.extend([(tag, [0; 4], group); 3]);
@@ -203,6 +219,7 @@ impl MshSections {
             }
             // Lines and points bound no volume.
             1 => drop(cursor.sizes::<2>()?),
+            MSH_LINE_3 => drop(cursor.sizes::<3>()?),
             15 => drop(cursor.size()?),
             _ => {
                 let cell = self.tets.len() + self.triangles.len();
@@ -232,6 +249,9 @@ impl MshSections {
         volume.mesh.tets = self.tets.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
         let mut faces: Vec<[u32; 3]> = self.triangles.iter().map(|(_, t, _)| t.map(|tag| self.index(tag))).collect();
         polyhedra.split(&mut volume.mesh.tets, &mut faces);
+        volume.boundary = faces;
+        let (tets_10, triangles_6) = self.second_order();
+        file.second_order = separate_midpoints(volume, tets_10, triangles_6)?;
         let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
         file.notes = notes;
         if file.notes.regions.is_empty() {
@@ -243,15 +263,24 @@ impl MshSections {
         // Triangles without a group are not a labelled boundary.
         if self.triangles.iter().any(|&(.., group)| group != 0) {
             file.labelled = true;
-            volume.boundary = faces;
             volume.boundary_patch = self.triangles.iter().map(|&(.., group)| group).collect();
             volume.boundary_block = vec![0; self.triangles.len()];
             volume.patches = self.patches(&caps);
             if has_regions {
                 label_faces(volume);
             }
+        } else {
+            volume.boundary.clear();
         }
         Ok(file)
+    }
+
+    /// Nodes of the second-order elements, in the order of their tags.
+    fn second_order(&mut self) -> (Vec<[u32; 10]>, Vec<[u32; 6]>) {
+        self.tets_10.sort_by_key(|&(tag, _)| tag);
+        self.triangles_6.sort_by_key(|&(tag, _)| tag);
+        let tets = self.tets_10.iter().map(|(_, nodes)| nodes.map(|tag| self.index(tag))).collect();
+        (tets, self.triangles_6.iter().map(|(_, nodes)| nodes.map(|tag| self.index(tag))).collect())
     }
 
     /// Gives tetrahedra without a group their region: physical groups are positive, so that regions with another id have

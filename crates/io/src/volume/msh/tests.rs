@@ -17,8 +17,10 @@ use std::io;
 type WriteFn = fn(&mut Vec<u8>, &dyn MeshSource, &MeshNotes) -> io::Result<()>;
 
 /// Both versions.
-const WRITERS: [WriteFn; 2] =
-    [|out, mesh, notes| write(out, mesh, notes, None), |out, mesh, notes| write_2(out, mesh, notes, None)];
+const WRITERS: [WriteFn; 2] = [
+    |out, mesh, notes| write(out, mesh, notes, (None, None)),
+    |out, mesh, notes| write_2(out, mesh, notes, (None, None)),
+];
 
 #[test]
 fn what_is_written_is_read_but_for_the_blocks() {
@@ -31,7 +33,7 @@ fn what_is_written_is_read_but_for_the_blocks() {
     volume.tet_block.fill(0);
     volume.boundary_block.fill(0);
     for bytes in both {
-        let expected = MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() };
+        let expected = MeshFile { volume: volume.clone(), labelled: true, second_order: None, notes: notes.clone() };
         assert_eq!(read(&bytes).unwrap(), expected);
     }
 }
@@ -40,7 +42,7 @@ fn what_is_written_is_read_but_for_the_blocks() {
 fn the_older_version_is_text() {
     let (volume, notes) = labelled_tube(1);
     let mut bytes = Vec::new();
-    write_2(&mut bytes, &volume, &notes, None).unwrap();
+    write_2(&mut bytes, &volume, &notes, (None, None)).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     assert!(text.starts_with("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n"), "{text}");
     let first = text.lines().skip_while(|line| *line != "$Elements").nth(2).unwrap();
@@ -67,7 +69,10 @@ fn regions_become_volumes() {
     });
     label_faces(&mut volume);
     for bytes in both {
-        assert_eq!(read(&bytes).unwrap(), MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
+        assert_eq!(
+            read(&bytes).unwrap(),
+            MeshFile { volume: volume.clone(), labelled: true, second_order: None, notes: notes.clone() }
+        );
         let names = String::from_utf8_lossy(&bytes).into_owned();
         assert!(names.contains("3 2 \"region_2\"\n3 7 \"region_7\"\n3 1000000 \"region_1000000\"\n"));
     }
@@ -158,9 +163,9 @@ fn values_stand_beside_nodes_and_elements() {
         let bytes_of = |mesh: &dyn MeshSource, values: Option<&dyn Beside>| {
             let mut bytes = Vec::new();
             if binary {
-                write(&mut bytes, mesh, &notes, values).unwrap();
+                write(&mut bytes, mesh, &notes, (values, None)).unwrap();
             } else {
-                write_2(&mut bytes, mesh, &notes, values).unwrap();
+                write_2(&mut bytes, mesh, &notes, (values, None)).unwrap();
             }
             bytes
         };

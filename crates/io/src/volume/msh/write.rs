@@ -1,12 +1,15 @@
 //! Writer of Gmsh's binary format.
 
-use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME};
+use super::elements::ElementNodes;
+use super::names::{Extra, SECTION, VOLUME_NAME};
 use super::surfaces::{Surfaces, run};
 use super::tags::Tags;
 use super::values::write_values;
 use crate::volume::content::MeshNotes;
+use crate::volume::second::WithMiddles;
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::geometry::Aabb;
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::{NamedRegion, Patch, VolumeMesh};
 use std::collections::BTreeMap;
@@ -65,13 +68,15 @@ pub(in crate::volume) fn write(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
-    values: Option<&dyn Beside>,
+    (values, second): (Option<&dyn Beside>, Option<&SecondOrder>),
 ) -> io::Result<()> {
+    let with_middles = second.map(|second| WithMiddles { mesh, second });
+    let mesh: &dyn MeshSource = with_middles.as_ref().map_or(mesh, |mesh| mesh);
     let surfaces = Surfaces::of(mesh)?;
     let volumes = volumes_of(mesh, notes, &surfaces)?;
     let mut tags = Tags::new(&surfaces, values.is_some());
     write_before_elements(out, mesh, &surfaces, &volumes, &tags)?;
-    write_elements(out, mesh, &surfaces, &volumes, &mut tags)?;
+    write_elements(out, mesh, ElementNodes::of(second), (&surfaces, &volumes), &mut tags)?;
     if let Some(values) = values {
         let regions: Vec<Option<i32>> = volumes.iter().map(|volume| volume.region).collect();
         write_values(out, mesh, values, &surfaces, &regions)?;
@@ -218,8 +223,8 @@ fn write_chosen_points(
 fn write_elements(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
-    surfaces: &Surfaces,
-    volumes: &[Volume],
+    elements: ElementNodes,
+    (surfaces, volumes): (&Surfaces, &[Volume]),
     tags: &mut Tags,
 ) -> io::Result<()> {
     let tets = mesh.counts().tets;
@@ -228,14 +233,15 @@ fn write_elements(
     let filled = if tets == 0 { 0 } else { volumes.len() };
     sizes(out, &[surfaces.list.len() + filled, count, usize::from(count > 0), count])?;
     for (i, surface) in surfaces.list.iter().enumerate() {
-        ints(out, &[2, i as i32 + 1, MSH_TRIANGLE])?;
+        ints(out, &[2, i as i32 + 1, elements.face_kind()])?;
         sizes(out, &[surface.faces])?;
         if i == 0 {
-            write_faces(out, mesh, surface.patch, tags)?;
+            write_faces(out, mesh, elements, surface.patch, tags)?;
             continue;
         }
         for held in surfaces.faces_of(surface.patch) {
-            write_element(out, tags, tets + held.face, held.corners)?;
+            let index = tets + held.face;
+            elements.face(held.corners, |_, nodes| write_element(out, tags, index, nodes))?;
         }
     }
     let by_region = match mesh.whole() {
@@ -243,15 +249,16 @@ fn write_elements(
         _ => Vec::new(),
     };
     for (i, volume) in volumes.iter().enumerate().take(filled) {
-        ints(out, &[3, i as i32 + 1, MSH_TETRA])?;
+        ints(out, &[3, i as i32 + 1, elements.tet_kind()])?;
         sizes(out, &[volume.tets])?;
         match (mesh.whole(), volume.region) {
             (Some(whole), Some(region)) => {
                 for &(_, tet) in run(&by_region, region, |tet| tet.0) {
-                    write_element(out, tags, tet as usize, whole.mesh.tets[tet as usize])?;
+                    let corners = whole.mesh.tets[tet as usize];
+                    elements.tet(corners, |_, nodes| write_element(out, tags, tet as usize, nodes))?;
                 }
             }
-            _ => write_tets(out, mesh, volume.region, tags)?,
+            _ => write_tets(out, mesh, elements, volume.region, tags)?,
         }
     }
     out.write_all(b"\n$EndElements\n")
@@ -264,12 +271,18 @@ fn by_region(mesh: &VolumeMesh) -> Vec<(i32, u32)> {
     tets
 }
 
-fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32, tags: &mut Tags) -> io::Result<()> {
+fn write_faces(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    elements: ElementNodes,
+    patch: i32,
+    tags: &mut Tags,
+) -> io::Result<()> {
     let mut before = mesh.counts().tets;
     mesh.each_faces(|piece| {
         for (i, (&face, _)) in piece.faces.iter().zip(&*piece.patches).enumerate().filter(|(_, (_, id))| **id == patch)
         {
-            write_element(out, tags, before + i, face)?;
+            elements.face(face, |_, nodes| write_element(out, tags, before + i, nodes))?;
         }
         before += piece.faces.len();
         Ok(())
@@ -277,27 +290,28 @@ fn write_faces(out: &mut impl Write, mesh: &dyn MeshSource, patch: i32, tags: &m
 }
 
 /// Writes the tetrahedra of one region, or all.
-fn write_tets(out: &mut impl Write, mesh: &dyn MeshSource, region: Option<i32>, tags: &mut Tags) -> io::Result<()> {
+fn write_tets(
+    out: &mut impl Write,
+    mesh: &dyn MeshSource,
+    elements: ElementNodes,
+    region: Option<i32>,
+    tags: &mut Tags,
+) -> io::Result<()> {
     let mut before = 0;
     mesh.each_tets(|piece| {
         let chosen = |i: usize| region.is_none_or(|id| piece.blocks.get(i) == Some(&id));
         for (i, &tet) in piece.tets.iter().enumerate().filter(|&(i, _)| chosen(i)) {
-            write_element(out, tags, before + i, tet)?;
+            elements.tet(tet, |_, nodes| write_element(out, tags, before + i, nodes))?;
         }
         before += piece.tets.len();
         Ok(())
     })
 }
 
-/// Writes an element, given by the indices of itself and its corners.
-fn write_element<const N: usize>(
-    out: &mut impl Write,
-    tags: &mut Tags,
-    index: usize,
-    corners: [u32; N],
-) -> io::Result<()> {
+/// Writes an element, given by the indices of itself and its nodes.
+fn write_element(out: &mut impl Write, tags: &mut Tags, index: usize, nodes: &[u32]) -> io::Result<()> {
     sizes(out, &[tags.element(index)])?;
-    sizes(out, &corners.map(|v| tags.node(v)))
+    nodes.iter().try_for_each(|&v| sizes(out, &[tags.node(v)]))
 }
 
 pub(super) fn ints(out: &mut impl Write, values: &[i32]) -> io::Result<()> {

@@ -1,10 +1,13 @@
 //! Writer of Gmsh's older format 2.2 as text, read by MFEM, NGSolve, OpenFOAM's converter and others.
 
-use super::names::{Extra, MSH_TETRA, MSH_TRIANGLE, SECTION, VOLUME_NAME, kind_of_cell, kind_of_face};
+use super::elements::ElementNodes;
+use super::names::{Extra, SECTION, VOLUME_NAME, kind_of_cell, kind_of_face};
 use super::values::write_values_2;
 use crate::volume::content::MeshNotes;
+use crate::volume::second::WithMiddles;
 use anastomesh_mesh::NamedRegion;
 use anastomesh_mesh::beside::Beside;
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::MeshSource;
 use anastomesh_mesh::stacks::MixedMesh;
 use anastomesh_mesh::{Patch, VolumeMesh};
@@ -63,8 +66,11 @@ pub(in crate::volume) fn write(
     out: &mut impl Write,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
-    values: Option<&dyn Beside>,
+    (values, second): (Option<&dyn Beside>, Option<&SecondOrder>),
 ) -> io::Result<()> {
+    let elements = ElementNodes::of(second);
+    let with_middles = second.map(|second| WithMiddles { mesh, second });
+    let mesh: &dyn MeshSource = with_middles.as_ref().map_or(mesh, |mesh| mesh);
     let (counts, groups) = (mesh.counts(), Groups::of(mesh, notes)?);
     write_before_elements(out, mesh, &groups)?;
     writeln!(out, "$Elements\n{}", counts.boundary + counts.tets)?;
@@ -73,7 +79,7 @@ pub(in crate::volume) fn write(
         for (i, &face) in piece.faces.iter().enumerate() {
             tag += 1;
             let patch = piece.patches.get(i).map_or(0, |&id| id.max(0));
-            write_element(out, tag, MSH_TRIANGLE, [patch, patch.max(1)], &face)?;
+            elements.face(face, |kind, nodes| write_element(out, tag, kind, [patch, patch.max(1)], nodes))?;
         }
         Ok(())
     })?;
@@ -81,7 +87,7 @@ pub(in crate::volume) fn write(
         for (i, &tet) in piece.tets.iter().enumerate() {
             tag += 1;
             let group = groups.of_tet(piece.blocks.get(i).copied().unwrap_or(0));
-            write_element(out, tag, MSH_TETRA, [group, group.max(1)], &tet)?;
+            elements.tet(tet, |kind, nodes| write_element(out, tag, kind, [group, group.max(1)], nodes))?;
         }
         Ok(())
     })?;

@@ -23,7 +23,7 @@ fn a_mesh_comes_back_whatever_pieces_it_is_written_in() {
     for sizes in [&[1000][..], &[1, 7, 30]] {
         let path = written(folder.path(), &InPieces { volume: &volume, sizes }, &notes);
         let back = read(&path).unwrap();
-        assert_eq!(back, MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() });
+        assert_eq!(back, MeshFile { volume: volume.clone(), labelled: true, second_order: None, notes: notes.clone() });
     }
 }
 

@@ -7,6 +7,7 @@ use crate::npy::{Item, head};
 use crate::volume::content::MeshNotes;
 use crate::volume::layers::LayerNumbers;
 use crate::volume::options::WriteOptions;
+use crate::volume::second::{CellNodes, WithMiddles};
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::Progress;
@@ -29,7 +30,7 @@ pub(in crate::volume) fn ensure_writable(path: &Path) -> io::Result<()> {
 }
 
 /// Writes a multi-pass mesh atomically. Corners are `int32`, which most programs expect, or `uint32` for large point
-/// counts. Values become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
+/// counts. Tetrahedra have 10 columns and triangles 6 in a second-order mesh. Values become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
 ///
 /// # Errors
 /// The operating system or the mesh source fails.
@@ -42,14 +43,17 @@ pub(in crate::volume) fn write(
 ) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
     let writer = ArrayFolder { folder: &folder, progress };
+    let nodes = CellNodes(options.second_order);
+    let with_middles = options.second_order.map(|second| WithMiddles { mesh, second });
+    let mesh: &dyn MeshSource = with_middles.as_ref().map_or(mesh, |mesh| mesh);
     let counts = mesh.counts();
     writer.array::<f64>(POINTS, counts.points, 3, |out| {
         mesh.each_points(|points| points.iter().try_for_each(|p| p.iter().try_for_each(|x| x.put(out))))
     })?;
     if i32::try_from(counts.points).is_ok() {
-        writer.cells(mesh, |v| v as i32)?;
+        writer.cells(mesh, nodes, |v| v as i32)?;
     } else {
-        writer.cells(mesh, |v| v)?;
+        writer.cells(mesh, nodes, |v| v)?;
     }
     writer.labels(mesh)?;
     if let Some(layers) = LayerNumbers::of(mesh, options.layers)? {
@@ -88,14 +92,14 @@ impl ArrayFolder<'_> {
         out.flush()
     }
 
-    /// Writes the corners of tetrahedra and boundary faces.
-    fn cells<T: Item>(&self, mesh: &dyn MeshSource, number: impl Fn(u32) -> T) -> io::Result<()> {
+    /// Writes the nodes of tetrahedra and boundary faces.
+    fn cells<T: Item>(&self, mesh: &dyn MeshSource, nodes: CellNodes, number: impl Fn(u32) -> T) -> io::Result<()> {
         let counts = mesh.counts();
-        self.array::<T>(TETS, counts.tets, 4, |out| {
-            mesh.each_tets(|piece| piece.tets.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
+        self.array::<T>(TETS, counts.tets, nodes.per_tet(), |out| {
+            mesh.each_tets(|piece| nodes.of_tets(&piece.tets).iter().try_for_each(|&v| number(v).put(out)))
         })?;
-        self.array::<T>(TRIANGLES, counts.boundary, 3, |out| {
-            mesh.each_faces(|piece| piece.faces.as_flattened().iter().try_for_each(|&v| number(v).put(out)))
+        self.array::<T>(TRIANGLES, counts.boundary, nodes.per_face(), |out| {
+            mesh.each_faces(|piece| nodes.of_faces(&piece.faces).iter().try_for_each(|&v| number(v).put(out)))
         })
     }
 

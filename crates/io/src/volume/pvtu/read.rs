@@ -24,7 +24,7 @@ pub(in crate::volume) fn read(path: &Path) -> Result<MeshFile, FileError<PvtuFau
         reader.read(&read_bytes(&piece)?).map_err(FileError::content(&piece))?;
     }
     unite(&mut reader).map_err(FileError::content(path))?;
-    Ok(reader.finish())
+    reader.finish().map_err(FileError::content(path))
 }
 
 /// Merges points with equal global ids, if there are ids; points are then sorted by them.

@@ -4,6 +4,7 @@ use super::layout::{EXTERIOR, MESH, WALLS};
 use super::sheet::{Chosen, Sheet, WideSheet, used};
 use super::spool::Spool;
 use crate::file::{Asked, AtomicFile, AtomicFolder};
+use crate::volume::second::CellNodes;
 use crate::volume::vtu::arrays::{ArrayLocation, ArrayWriter, INT32, Width, cell_arrays, points_array};
 use crate::volume::vtu::{ELEMENT_ID, NODE_ID, Recounted, file::File};
 use crate::vtk_xml::Blocks;
@@ -89,7 +90,7 @@ pub(super) fn caps(spool: &Spool, has: impl Fn(i32) -> bool) -> io::Result<BTree
 /// Checks that all counts fit into 32 bits, as the readers require.
 pub(super) fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
     let counts = mesh.counts();
-    if Width::of(counts) == Width::Int32 {
+    if Width::of(counts, CellNodes::default()) == Width::Int32 {
         return Ok(());
     }
     let text = format!(
@@ -105,7 +106,7 @@ fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource, numbers: &Nu
     let counts = mesh.counts();
     let (points, tets) = (counts.points, counts.tets);
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
-    arrays.extend(cell_arrays(mesh, Width::Int32));
+    arrays.extend(cell_arrays(mesh, CellNodes::default(), Width::Int32));
     let (node, element, region) = (|v| numbers.node(v), |tet| numbers.element(tet), |_| numbers.region.cast_unsigned());
     arrays.push(uncompressed(ints(ArrayLocation::PointData, NODE_ID, points, &node)));
     arrays.push(uncompressed(ints(ArrayLocation::CellData, ELEMENT_ID, tets, &element)));

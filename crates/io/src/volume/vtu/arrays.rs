@@ -1,8 +1,12 @@
 //! Arrays of an unstructured grid and the sources of their values.
 
-use super::names::{CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, LAYER, NODE_ID, REGION, VTK_TETRA, VTK_TRIANGLE, field};
+use super::names::{
+    CELL_IDS, ELEMENT_ID, GHOSTS, GLOBAL_IDS, LAYER, NODE_ID, REGION, VTK_QUADRATIC_TETRA, VTK_QUADRATIC_TRIANGLE,
+    VTK_TETRA, VTK_TRIANGLE, field,
+};
 use crate::volume::content::MeshNotes;
 use crate::volume::layers::LayerNumbers;
+use crate::volume::second::CellNodes;
 use crate::vtk_xml::Blocks;
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::beside::{Beside, Column};
@@ -61,9 +65,14 @@ impl<'a> ArrayWriter<'a> {
 }
 
 /// Points, cells and labels of a mesh. Blocks are also regions if `has_regions`.
-pub(super) fn of_mesh(mesh: &dyn MeshSource, float32: bool, has_regions: bool) -> Vec<ArrayWriter<'_>> {
+pub(super) fn of_mesh<'a>(
+    mesh: &'a dyn MeshSource,
+    nodes: CellNodes<'a>,
+    float32: bool,
+    has_regions: bool,
+) -> Vec<ArrayWriter<'a>> {
     let mut all = vec![points_array(mesh.counts().points, float32, |each| mesh.each_points(each))];
-    all.extend(cell_arrays(mesh, Width::of(mesh.counts())));
+    all.extend(cell_arrays(mesh, nodes, Width::of(mesh.counts(), nodes)));
     all.extend([patch_array(mesh), block_array("block", mesh)]);
     all.extend(has_regions.then(|| block_array(REGION, mesh)));
     all
@@ -235,9 +244,9 @@ pub(in crate::volume) enum Width {
 
 impl Width {
     /// Ids are u32: within the signed range they fit into 32 bits, otherwise 64 bits are needed.
-    pub(in crate::volume) fn of(counts: SourceCounts) -> Self {
+    pub(in crate::volume) fn of(counts: SourceCounts, nodes: CellNodes) -> Self {
         let fits = |count: usize| i32::try_from(count).is_ok();
-        let narrow = fits(4 * counts.tets + 3 * counts.boundary) && fits(counts.points);
+        let narrow = fits(nodes.per_tet() * counts.tets + nodes.per_face() * counts.boundary) && fits(counts.points);
         if narrow { Self::Int32 } else { Self::Int64 }
     }
 
@@ -253,23 +262,31 @@ impl Width {
     }
 }
 
-pub(in crate::volume) fn cell_arrays(mesh: &dyn MeshSource, width: Width) -> [ArrayWriter<'_>; 3] {
+/// Nodes, offsets and types of tetrahedra and boundary faces.
+pub(in crate::volume) fn cell_arrays<'a>(
+    mesh: &'a dyn MeshSource,
+    nodes: CellNodes<'a>,
+    width: Width,
+) -> [ArrayWriter<'a>; 3] {
     let SourceCounts { tets, boundary, .. } = mesh.counts();
+    let [per_tet, per_face] = [nodes.per_tet(), nodes.per_face()];
     let corners = move |out: &mut Blocks| {
         let mut push = |ids: &[u32]| width.push(out, ids.len(), |i| u64::from(ids[i]));
-        mesh.each_tets(|piece| push(piece.tets.as_flattened()))?;
-        mesh.each_faces(|piece| push(piece.faces.as_flattened()))
+        mesh.each_tets(|piece| push(&nodes.of_tets(&piece.tets)))?;
+        mesh.each_faces(|piece| push(&nodes.of_faces(&piece.faces)))
     };
     let offsets = move |out: &mut Blocks| {
-        width.push(out, tets, |tet| 4 * (tet as u64 + 1))?;
-        width.push(out, boundary, |face| 4 * tets as u64 + 3 * (face as u64 + 1))
+        width.push(out, tets, |tet| (per_tet * (tet + 1)) as u64)?;
+        width.push(out, boundary, |face| (per_tet * tets + per_face * (face + 1)) as u64)
     };
+    let [tet_type, face_type] =
+        if nodes.0.is_some() { [VTK_QUADRATIC_TETRA, VTK_QUADRATIC_TRIANGLE] } else { [VTK_TETRA, VTK_TRIANGLE] };
     let types = move |out: &mut Blocks| {
-        out.push(tets, |_| [VTK_TETRA])?;
-        out.push(boundary, |_| [VTK_TRIANGLE])
+        out.push(tets, |_| [tet_type])?;
+        out.push(boundary, |_| [face_type])
     };
-    let corners =
-        ArrayWriter::new(ArrayLocation::Cells, "connectivity", width.kind(), 4 * tets + 3 * boundary, corners);
+    let values = per_tet * tets + per_face * boundary;
+    let corners = ArrayWriter::new(ArrayLocation::Cells, "connectivity", width.kind(), values, corners);
     [
         // Half of a wide number is zeros.
         ArrayWriter { shrinks: width == Width::Int64, ..corners },
@@ -288,7 +305,7 @@ pub(super) fn types_array<'a>(types: Vec<u8>) -> ArrayWriter<'a> {
 /// Points, triangles and labels of a boundary. Blocks are also regions if `has_regions`.
 pub(super) fn of_surface<'a>(surface: &'a BoundarySurface, float32: bool, has_regions: bool) -> Vec<ArrayWriter<'a>> {
     let counts = surface.counts();
-    let (width, faces) = (Width::of(counts), counts.boundary);
+    let (width, faces) = (Width::of(counts, CellNodes::default()), counts.boundary);
     let corners = move |out: &mut Blocks| {
         surface.each_faces(|piece| {
             let ids = piece.faces.as_flattened();

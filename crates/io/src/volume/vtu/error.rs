@@ -1,5 +1,6 @@
 //! Errors of VTU files.
 
+use crate::volume::content::SecondOrderFault;
 use crate::vtk_xml::VtkError;
 
 /// Errors of a tetrahedral mesh in a VTK unstructured grid.
@@ -9,6 +10,9 @@ pub enum VtuFault {
     /// The VTK XML file is invalid.
     #[error(transparent)]
     Vtk(#[from] VtkError),
+    /// Second-order cells are invalid.
+    #[error(transparent)]
+    SecondOrder(#[from] SecondOrderFault),
     /// A required element or array is missing.
     #[error("'{what}' is missing: is the file truncated?")]
     Missing {
@@ -32,7 +36,7 @@ pub enum VtuFault {
         cell: usize,
     },
     /// A cell is neither a tetrahedron nor a triangle.
-    #[error("cell {cell} is of type {kind}; only linear tetrahedra and triangles are supported")]
+    #[error("cell {cell} is of type {kind}; only tetrahedra and triangles of first or second order are supported")]
     UnsupportedCell {
         /// Cell type, as a number of the format.
         kind: i64,

@@ -6,6 +6,9 @@ pub(super) const VTK_QUAD: u8 = 9;
 pub(super) const VTK_TETRA: u8 = 10;
 pub(super) const VTK_PRISM: u8 = 13;
 pub(super) const VTK_PYRAMID: u8 = 14;
+pub(super) const VTK_QUADRATIC_EDGE: u8 = 21;
+pub(super) const VTK_QUADRATIC_TRIANGLE: u8 = 22;
+pub(super) const VTK_QUADRATIC_TETRA: u8 = 24;
 
 /// Names of the field arrays.
 pub(super) mod field {

@@ -2,8 +2,11 @@
 
 use super::error::VtuFault;
 use super::fields::Fields;
-use super::names::{GLOBAL_IDS, REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_TETRA, VTK_TRIANGLE};
-use crate::volume::content::MeshFile;
+use super::names::{
+    GLOBAL_IDS, REGION, VTK_PRISM, VTK_PYRAMID, VTK_QUAD, VTK_QUADRATIC_EDGE, VTK_QUADRATIC_TETRA,
+    VTK_QUADRATIC_TRIANGLE, VTK_TETRA, VTK_TRIANGLE,
+};
+use crate::volume::content::{MeshFile, separate_midpoints};
 use crate::vtk_xml::{ElementId, VtkXml};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::geometry::Point3;
@@ -24,7 +27,7 @@ const LABEL_ARRAYS: [&str; 9] = [
 ];
 
 /// Reads a mesh from the bytes of a `.vtu` file. Prisms, pyramids and quadrilaterals are split into tetrahedra and
-/// triangles; vertex and line cells are skipped.
+/// triangles; vertex and line cells are skipped. Second-order tetrahedra and triangles are read if all are.
 /// Point ids that are negative or exceed 32 bits become `u32::MAX`, which a check detects.
 ///
 /// # Errors
@@ -32,7 +35,7 @@ const LABEL_ARRAYS: [&str; 9] = [
 pub(in crate::volume) fn read(bytes: &[u8]) -> Result<MeshFile, VtuFault> {
     let mut reader = GridReader::default();
     reader.read(bytes)?;
-    Ok(reader.finish())
+    reader.finish()
 }
 
 /// Mesh read from one or several consecutive files.
@@ -41,6 +44,9 @@ pub(in crate::volume) struct GridReader {
     volume: VolumeMesh,
     /// Cells to split.
     polyhedra: Polyhedra,
+    /// Nodes of the second-order cells, which are also among the cells of the mesh with their corners.
+    tets_10: Vec<[u32; 10]>,
+    faces_6: Vec<[u32; 6]>,
     /// Name of the label array; later pieces use that of the first.
     label_array: Option<&'static str>,
     /// Field data of the first file that has any.
@@ -72,20 +78,26 @@ impl GridReader {
     /// Replaces the points. `index_of` holds the new number of each present one. Cells are split afterwards, because
     /// neighbours in different pieces agree on diagonals only by the common numbers.
     pub(in crate::volume) fn renumber(&mut self, points: Vec<Point3>, index_of: &[u32]) {
-        let Self { volume, polyhedra, .. } = self;
+        let Self { volume, polyhedra, tets_10, faces_6, .. } = self;
         volume.mesh.points = points;
         let united = |v: &mut u32| *v = index_of.get(*v as usize).copied().unwrap_or(u32::MAX);
         volume.mesh.tets.as_flattened_mut().par_iter_mut().for_each(united);
         volume.boundary.as_flattened_mut().par_iter_mut().for_each(united);
+        tets_10.as_flattened_mut().par_iter_mut().for_each(united);
+        faces_6.as_flattened_mut().par_iter_mut().for_each(united);
         polyhedra.prisms.iter_mut().flat_map(|(_, prism)| prism).for_each(united);
         polyhedra.pyramids.iter_mut().flat_map(|(_, pyramid)| pyramid).for_each(united);
         polyhedra.quads.iter_mut().flat_map(|(_, quad)| quad).for_each(united);
     }
 
     /// Returns the mesh.
-    pub(in crate::volume) fn finish(mut self) -> MeshFile {
+    ///
+    /// # Errors
+    /// Second-order cells are invalid.
+    pub(in crate::volume) fn finish(mut self) -> Result<MeshFile, VtuFault> {
         self.polyhedra.split(&mut self.volume.mesh.tets, &mut self.volume.boundary);
-        let mut file = MeshFile { volume: self.volume, labelled: false, notes: self.fields.notes() };
+        let second_order = separate_midpoints(&mut self.volume, self.tets_10, self.faces_6)?;
+        let mut file = MeshFile { volume: self.volume, labelled: false, second_order, notes: self.fields.notes() };
         match self.label_array {
             Some(name) if !file.volume.boundary.is_empty() => {
                 file.labelled = true;
@@ -98,7 +110,7 @@ impl GridReader {
                 file.volume.boundary_block.clear();
             }
         }
-        file
+        Ok(file)
     }
 
     fn read_piece(&mut self, xml: &VtkXml, piece: ElementId) -> Result<(), VtuFault> {
@@ -147,6 +159,14 @@ impl GridReader {
             match (kind as u8, ids) {
                 (VTK_TETRA, &[a, b, c, d]) => drop(tets(&[[id(a), id(b), id(c), id(d)]])),
                 (VTK_TRIANGLE, &[a, b, c]) => drop(faces(&[[id(a), id(b), id(c)]])),
+                (VTK_QUADRATIC_TETRA, &[a, b, c, d, ..]) if ids.len() == 10 => {
+                    tets(&[[id(a), id(b), id(c), id(d)]]);
+                    self.tets_10.push(std::array::from_fn(|i| id(ids[i])));
+                }
+                (VTK_QUADRATIC_TRIANGLE, &[a, b, c, ..]) if ids.len() == 6 => {
+                    faces(&[[id(a), id(b), id(c)]]);
+                    self.faces_6.push(std::array::from_fn(|i| id(ids[i])));
+                }
                 (VTK_PRISM, &[a, b, c, d, e, f]) => {
                     self.polyhedra.prisms.push((tets(&[[0; 4]; 3]), [a, b, c, d, e, f].map(id)));
                 }
@@ -156,11 +176,20 @@ impl GridReader {
                 (VTK_QUAD, &[a, b, c, d]) => {
                     self.polyhedra.quads.push((faces(&[[0; 3]; 2]), [a, b, c, d].map(id)));
                 }
-                (VTK_TETRA | VTK_TRIANGLE | VTK_PRISM | VTK_PYRAMID | VTK_QUAD, _) => {
+                (
+                    VTK_TETRA
+                    | VTK_TRIANGLE
+                    | VTK_PRISM
+                    | VTK_PYRAMID
+                    | VTK_QUAD
+                    | VTK_QUADRATIC_TETRA
+                    | VTK_QUADRATIC_TRIANGLE,
+                    _,
+                ) => {
                     return Err(VtuFault::BadOffset { cell });
                 }
                 // Empty, vertex and line cells bound no volume.
-                (0..=4, _) => {}
+                (0..=4 | VTK_QUADRATIC_EDGE, _) => {}
                 _ => return Err(VtuFault::UnsupportedCell { kind, cell }),
             }
         }

@@ -7,6 +7,7 @@ use super::write::write;
 use crate::volume::content::{MeshFile, MeshNotes};
 use crate::volume::fixtures::labelled_tube;
 use crate::volume::options::{GridOptions, WriteOptions};
+use crate::volume::second::CellNodes;
 use crate::vtk_xml::{Packing, VtkXml, write_blocks};
 use anastomesh_mesh::beside::{Beside, Column};
 use anastomesh_mesh::check::Expectation;
@@ -28,7 +29,7 @@ fn what_is_written_is_read() {
     for layers in [1, 900] {
         let (volume, notes) = labelled_tube(layers);
         let file = read(&bytes_of(&volume, &notes)).unwrap();
-        assert_eq!(file, MeshFile { volume, labelled: true, notes });
+        assert_eq!(file, MeshFile { volume, labelled: true, second_order: None, notes });
     }
 }
 
@@ -41,7 +42,7 @@ fn options_change_how_it_stands_in_the_file() {
         read(&bytes.into_inner()).unwrap()
     };
     let usual = GridOptions::default();
-    let whole = MeshFile { volume: volume.clone(), labelled: true, notes: notes.clone() };
+    let whole = MeshFile { volume: volume.clone(), labelled: true, second_order: None, notes: notes.clone() };
     assert_eq!(read_with(GridOptions { raw: true, ..usual }), whole);
     let mut short = whole;
     short.volume.mesh.points.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
@@ -119,7 +120,7 @@ fn an_empty_mesh_and_one_without_caps() {
     volume.patches[1].cap = None;
     let notes = MeshNotes::default();
     let file = read(&bytes_of(&volume, &notes)).unwrap();
-    assert_eq!(file, MeshFile { volume, labelled: true, notes });
+    assert_eq!(file, MeshFile { volume, labelled: true, second_order: None, notes });
     let file = read(&bytes_of(&VolumeMesh::default(), &MeshNotes::default())).unwrap();
     assert_eq!(file, MeshFile::default());
 }
@@ -131,7 +132,7 @@ fn caps_beyond_the_list_of_names_are_kept() {
     volume.patches[1] = Patch { id: far, name: format!("outlet_{}", far - 3), ..volume.patches[1].clone() };
     volume.boundary_patch.iter_mut().filter(|id| **id == 3).for_each(|id| *id = far);
     let file = read(&bytes_of(&volume, &notes)).unwrap();
-    assert_eq!(file, MeshFile { volume, labelled: true, notes });
+    assert_eq!(file, MeshFile { volume, labelled: true, second_order: None, notes });
 }
 
 #[test]
@@ -207,7 +208,7 @@ fn a_large_patch_id_makes_no_large_file() {
 
 #[test]
 fn many_cells_or_points_need_wide_numbers() {
-    let of = |points, tets, boundary| Width::of(SourceCounts { points, tets, boundary });
+    let of = |points, tets, boundary| Width::of(SourceCounts { points, tets, boundary }, CellNodes::default());
     assert_eq!(of(1 << 30, 150_000_000, 40_000_000), Width::Int32);
     assert_eq!(of(4, (1 << 29) - 1, 1), Width::Int32);
     assert_eq!(of(4, 1 << 29, 0), Width::Int64);
@@ -218,7 +219,7 @@ fn many_cells_or_points_need_wide_numbers() {
 #[test]
 fn wide_numbers_are_read() {
     let (volume, _) = labelled_tube(200);
-    let [corners, offsets, _] = cell_arrays(&volume, Width::Int64);
+    let [corners, offsets, _] = cell_arrays(&volume, CellNodes::default(), Width::Int64);
     for (array, first) in [(corners, u64::from(volume.mesh.tets[0][0])), (offsets, 4)] {
         assert_eq!((array.kind, array.width), ("Int64", 8));
         let mut bytes = Cursor::new(Vec::new());

@@ -5,8 +5,10 @@ use super::file::File;
 use crate::volume::content::MeshNotes;
 use crate::volume::layers::LayerNumbers;
 use crate::volume::options::{GridOptions, WriteOptions};
+use crate::volume::second::{CellNodes, WithMiddles};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::boundary::BoundarySurface;
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::{FacePiece, MeshSource, SourceCounts};
 use std::io::{self, Seek, Write};
 
@@ -23,7 +25,8 @@ pub(in crate::volume) fn write(
     options: &WriteOptions,
 ) -> io::Result<()> {
     let layers = LayerNumbers::of(mesh, options.layers)?;
-    Grid { layers, values: options.values, ..Grid::of(mesh, notes, options.grid) }.write(out)
+    let second = options.second_order;
+    Grid { layers, values: options.values, second, ..Grid::of(mesh, notes, options.grid) }.write(out)
 }
 
 /// Contents of a file.
@@ -44,6 +47,8 @@ pub(in crate::volume) struct Grid<'a> {
     pub options: GridOptions,
     /// Additional values of the mesh.
     pub values: Option<&'a dyn Beside>,
+    /// Midpoints of a second-order mesh.
+    pub second: Option<&'a SecondOrder>,
 }
 
 /// Numbers in the whole mesh of the parts of a region.
@@ -74,18 +79,21 @@ impl<'a> Grid<'a> {
             layers: None,
             options,
             values: None,
+            second: None,
         }
     }
 
     /// Writes the file.
     pub(in crate::volume) fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
-        let alone = Recounted::without_boundary(self.mesh);
-        let mesh: &dyn MeshSource = if self.options.tets_alone { &alone } else { self.mesh };
+        let with_middles = self.second.map(|second| WithMiddles { mesh: self.mesh, second });
+        let mesh: &dyn MeshSource = with_middles.as_ref().map_or(self.mesh, |mesh| mesh);
+        let alone = Recounted::without_boundary(mesh);
+        let mesh: &dyn MeshSource = if self.options.tets_alone { &alone } else { mesh };
         let mut all = self.notes.map_or_else(Vec::new, |notes| arrays::of_fields(mesh.patches(), notes));
         all.extend(self.global_ids.map(arrays::of_ids));
         all.extend(self.solver_ids.iter().flat_map(|ids| arrays::of_solver(ids.points, ids.cells(self.options))));
         all.extend(self.piece.iter().flat_map(|piece| arrays::of_piece(*piece, mesh.counts().boundary)));
-        all.extend(arrays::of_mesh(mesh, self.options.float32, self.has_regions));
+        all.extend(arrays::of_mesh(mesh, CellNodes(self.second), self.options.float32, self.has_regions));
         all.extend(self.layers.map(|layers| arrays::layer_array(layers, mesh.counts())));
         all.extend(self.values.into_iter().flat_map(|values| arrays::of_values(mesh, values)));
         let SourceCounts { points, tets, boundary } = mesh.counts();

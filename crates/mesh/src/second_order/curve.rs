@@ -1,0 +1,150 @@
+//! Midpoints on curved surfaces, pulled back where an element would be distorted.
+
+use super::edges::Edges;
+use super::jacobian::{Sign, jacobian_above};
+use super::midpoints::SecondOrder;
+use super::surface;
+use crate::VolumeMesh;
+use crate::geometry::{Point3, Vec3};
+use rayon::prelude::*;
+
+/// Least Jacobian determinant of a curved element, relative to that of the straight one with the same corners. Elements below it are
+/// pulled back. A positive determinant suffices for solvers; the margin keeps their matrices regular.
+const LEAST_SCALED: f64 = 0.1;
+
+/// Number of times the offset of an edge is halved before the edge becomes straight.
+const HALVINGS: u8 = 4;
+
+/// Counts of midpoints, and the distortion of the elements of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Curving {
+    /// All midpoints.
+    pub midpoints: usize,
+    /// Midpoints off the middles of their corners: on a smooth surface, or pulled back from it.
+    pub curved: usize,
+    /// Midpoints pulled back from their surface.
+    pub pulled: usize,
+    /// Pulled midpoints that are the middles of their corners, and not among `curved`.
+    pub straightened: usize,
+    /// Lower bound of the Jacobian determinants of all elements, each relative to that of the straight element with the same
+    /// corners. 1 for straight elements.
+    pub least_scaled: f64,
+}
+
+impl SecondOrder {
+    /// Midpoints of a mesh. Those of labelled faces lie on a smooth surface through the vertices of the faces; caps and other flat
+    /// parts stay flat. Where an element would be distorted, the midpoints of its edges are pulled back. The result does not
+    /// depend on the number of threads.
+    ///
+    /// All tetrahedra must be positive. Each face must be a face of a tetrahedron.
+    pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {
+        let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, volume.mesh.points.len());
+        let offsets = surface::offsets(volume, &edges);
+        curve(volume, edges, offsets)
+    }
+}
+
+/// Places the midpoints of edges at the given offsets from the middles, as far as the elements permit.
+fn curve(volume: &VolumeMesh, edges: Edges, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
+    let mut state = State {
+        volume,
+        touched: offsets.iter().map(|offset| *offset != Vec3::zeros()).collect(),
+        halvings: vec![0; offsets.len()],
+        least: vec![1.0; volume.mesh.tets.len()],
+        second: SecondOrder::straight_with(&volume.mesh.points, edges),
+        offsets,
+    };
+    state.place();
+    // Each round halves an offset that is not zero. The number of halvings of each is limited, and so are the rounds.
+    loop {
+        let bad = state.distorted();
+        if bad.is_empty() {
+            return state.finish();
+        }
+        state.pull(&bad);
+    }
+}
+
+/// Midpoints between two rounds.
+struct State<'a> {
+    volume: &'a VolumeMesh,
+    second: SecondOrder,
+    /// Present offset of each edge.
+    offsets: Vec<Vec3>,
+    /// Number of times each offset was halved.
+    halvings: Vec<u8>,
+    /// Edges whose midpoints were moved last.
+    touched: Vec<bool>,
+    /// Distortion of each element: its least determinant, relative to that of the straight element.
+    least: Vec<f64>,
+}
+
+impl State<'_> {
+    /// Places the touched midpoints.
+    fn place(&mut self) {
+        let Self { volume, second, offsets, touched, .. } = self;
+        let SecondOrder { edges, middles, .. } = second;
+        let all = middles.par_iter_mut().zip(edges.list()).zip(offsets).zip(touched).filter(|(_, touched)| **touched);
+        all.for_each(|(((middle, ends), offset), _)| {
+            let [a, b] = ends.map(|v| volume.mesh.points[v as usize]);
+            *middle = nalgebra::center(&a, &b) + *offset;
+        });
+    }
+
+    /// Curved edges of distorted elements, ascending. Examines the elements with a touched edge.
+    fn distorted(&mut self) -> Vec<u32> {
+        let Self { volume, second, offsets, touched, least, .. } = self;
+        let examine = |(&tet, least): (&[u32; 4], &mut f64)| -> Vec<u32> {
+            let edges = second.edges_of(tet);
+            if !edges.iter().any(|&edge| touched[edge as usize]) {
+                return Vec::new();
+            }
+            let curved: Vec<u32> = edges.into_iter().filter(|&edge| offsets[edge as usize] != Vec3::zeros()).collect();
+            // A straight element is valid if the tetrahedron of its corners is.
+            let found = if curved.is_empty() { Some(1.0) } else { scaled(&second.nodes(&volume.mesh.points, tet)) };
+            *least = found.unwrap_or(*least);
+            if found.is_some() { Vec::new() } else { curved }
+        };
+        let mut bad: Vec<u32> = volume.mesh.tets.par_iter().zip(least).flat_map_iter(examine).collect();
+        bad.par_sort_unstable();
+        bad.dedup();
+        bad
+    }
+
+    /// Halves the offsets of edges, and places their midpoints.
+    fn pull(&mut self, edges: &[u32]) {
+        self.touched.fill(false);
+        for &edge in edges {
+            let edge = edge as usize;
+            self.halvings[edge] += 1;
+            let factor = if self.halvings[edge] > HALVINGS { 0.0 } else { 0.5 };
+            self.offsets[edge] *= factor;
+            self.touched[edge] = true;
+        }
+        self.place();
+    }
+
+    fn finish(self) -> (SecondOrder, Curving) {
+        let is_curved = |edge: &usize| self.offsets[*edge] != Vec3::zeros();
+        let pulled: Vec<usize> = (0..self.offsets.len()).filter(|&edge| self.halvings[edge] > 0).collect();
+        let curving = Curving {
+            midpoints: self.offsets.len(),
+            curved: (0..self.offsets.len()).filter(is_curved).count(),
+            pulled: pulled.len(),
+            straightened: pulled.iter().filter(|edge| !is_curved(edge)).count(),
+            least_scaled: self.least.iter().copied().fold(1.0, f64::min),
+        };
+        (self.second, curving)
+    }
+}
+
+/// Lower bound of the determinant of an element, relative to that of the straight element. `None` if it is not proved to be positive
+/// and at least [`LEAST_SCALED`].
+fn scaled(nodes: &[Point3; 10]) -> Option<f64> {
+    let [a, b, c, d] = [nodes[0], nodes[1], nodes[2], nodes[3]];
+    let straight = (b - a).cross(&(c - a)).dot(&(d - a)).max(f64::MIN_POSITIVE);
+    match jacobian_above(nodes, LEAST_SCALED * straight) {
+        Sign::Above { least } => Some(least / straight),
+        Sign::Below | Sign::Undecided => None,
+    }
+}

@@ -1,0 +1,88 @@
+//! Option `--order`: second-order elements.
+
+use super::exit::Failure;
+use anastomesh_io::volume::{MeshFormat, MeshNotes};
+use anastomesh_mesh::VolumeMesh;
+use anastomesh_mesh::check::{CheckReport, check_regions};
+use anastomesh_mesh::second_order::{Curving, SecondOrder};
+use anastomesh_mesh::source::{MeshSource, gather};
+use std::io;
+
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct OrderArgs {
+    /// Order of the elements: 1, or 2 for ten-node tetrahedra whose midpoints lie on smooth walls and interfaces (VTU, MSH and
+    /// .npyd, in memory)
+    #[arg(long, value_name = "ORDER", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
+    order: u8,
+}
+
+/// Second-order mesh.
+pub struct SecondOrderMesh {
+    /// Mesh of the corners.
+    pub corners: VolumeMesh,
+    pub midpoints: SecondOrder,
+    pub curving: Curving,
+    pub check: CheckReport,
+    /// True if vertices are on the curved surfaces of the given volume, false if they are those of the linear mesh.
+    pub is_balanced: bool,
+}
+
+impl SecondOrderMesh {
+    fn of(corners: VolumeMesh, notes: &MeshNotes, is_balanced: bool) -> Self {
+        let (midpoints, curving) = SecondOrder::curved(&corners);
+        let check = check_regions(&corners, &notes.regions, notes.expectation.as_ref());
+        let check = check.with_second_order(&corners, &midpoints);
+        Self { corners, midpoints, curving, check, is_balanced }
+    }
+}
+
+impl OrderArgs {
+    /// True for second-order elements.
+    pub fn is_second(self) -> bool {
+        self.order == 2
+    }
+
+    /// Refuses formats without second-order elements, and this other option if it is given.
+    pub fn check(self, format: Option<MeshFormat>, others: &[(&str, bool)]) -> Result<(), Failure> {
+        if !self.is_second() {
+            return Ok(());
+        }
+        if !format.is_some_and(MeshFormat::has_second_order) {
+            return Err(Failure::usage("--order 2 is not supported by this format: use .vtu, .msh, .msh2 or .npyd"));
+        }
+        match others.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Failure::usage(format!("--order 2 does not combine with {option}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Midpoints on surfaces through the vertices of a mesh; `None` for linear elements.
+    pub fn midpoints(self, volume: &VolumeMesh) -> Option<(SecondOrder, Curving)> {
+        self.is_second().then(|| SecondOrder::curved(volume))
+    }
+
+    /// Second-order mesh that encloses the volume of a linear one; `None` for linear elements. If the mesh with moved vertices has more
+    /// faults than the linear one, which `check` reports, vertices stay.
+    pub fn balanced(
+        self,
+        mesh: &dyn MeshSource,
+        check: &CheckReport,
+        notes: &MeshNotes,
+    ) -> io::Result<Option<SecondOrderMesh>> {
+        if !self.is_second() {
+            return Ok(None);
+        }
+        let given = mesh.whole().map_or_else(|| gather(mesh), |volume| Ok(volume.clone()))?;
+        let mut moved = given.clone();
+        moved.mesh.points = SecondOrder::balanced_points(&given);
+        let balanced = SecondOrderMesh::of(moved, notes, true);
+        let faults = |check: &CheckReport| check.failed().map(|failed| failed.count.max(1)).sum::<u64>();
+        let is_sound = faults(&balanced.check) <= faults(check);
+        Ok(Some(if is_sound { balanced } else { SecondOrderMesh::of(given, notes, false) }))
+    }
+
+    /// The option as command-line text, if it is not the default.
+    pub fn typed(self) -> &'static str {
+        if self.is_second() { " --order 2" } else { "" }
+    }
+}
