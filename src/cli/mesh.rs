@@ -347,8 +347,11 @@ impl Args {
         };
         let kept = store.bytes_on_disk();
         let format = self.format.of(&self.output)?;
-        let fits =
-            |lumen: &Estimate| limits::fits(&with_regions(lumen, domain), &plan, &place, kept, (&self.output, format));
+        let fits = |lumen: &Estimate| {
+            let whole = with_regions(lumen, domain);
+            self.order.fits(&whole, plan.memory)?;
+            limits::fits(&whole, &plan, &place, kept, (&self.output, format))
+        };
         let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
         self.finish(made, &plan, (domain, Some(&store)), bars)
     }

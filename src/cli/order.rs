@@ -1,12 +1,16 @@
 //! Option `--order`: second-order elements.
 
 use super::exit::Failure;
+use crate::pipeline::{Estimate, TooLarge};
 use anastomesh_io::volume::{MeshFormat, MeshNotes};
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::check::{CheckReport, check_regions};
 use anastomesh_mesh::second_order::{Curving, SecondOrder};
 use anastomesh_mesh::source::{MeshSource, gather};
 use std::io;
+
+/// Bytes of memory per tetrahedron.
+const BYTES_PER_TET: f64 = 240.0;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct OrderArgs {
@@ -54,6 +58,16 @@ impl OrderArgs {
             Some((option, _)) => Err(Failure::usage(format!("--order 2 does not combine with {option}"))),
             None => Ok(()),
         }
+    }
+
+    /// Checks that a second-order mesh fits into the memory limit.
+    pub fn fits(self, estimate: &Estimate, memory: u64) -> Result<(), TooLarge> {
+        let bytes = (estimate.tets * BYTES_PER_TET) as u64;
+        if self.is_second() && bytes > memory {
+            let (estimate, why, instead) = (*estimate, "second-order elements", "--order 1");
+            return Err(TooLarge::Whole { estimate, why, instead, bytes, memory });
+        }
+        Ok(())
     }
 
     /// Midpoints on surfaces through the vertices of a mesh; `None` for linear elements.

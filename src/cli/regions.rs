@@ -17,7 +17,7 @@ const TISSUE_PER_TRIANGLE: f64 = 9.4;
 const BYTES_PER_TET: f64 = 90.0;
 /// Bytes of memory per triangle of the wall for regions in parts: the largest need of growing shells, dividing tissue and the
 /// check.
-const BYTES_PER_TRIANGLE: f64 = 380.0;
+const BYTES_PER_TRIANGLE: f64 = 310.0;
 
 /// Estimate of a mesh with regions from that of its lumen.
 pub fn with_regions(lumen: &Estimate, plan: &DomainPlan) -> Estimate {

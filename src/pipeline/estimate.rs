@@ -43,6 +43,9 @@ const BYTES_PER_CELL: f64 = 300.0;
 const PER_TET: f64 = 60.0;
 const PER_CELL: f64 = 80.0;
 
+/// Operations per tetrahedron of regions around the lumen, as measured with kidneys.
+const PER_TET_OF_REGIONS: f64 = 236.0;
+
 /// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. The last is for a
 /// compressed VTU with vertex numbers of 64 bits.
 const STORED_PER_TET: f64 = 17.0;
@@ -124,6 +127,7 @@ impl Estimate {
             tets: self.tets + tets,
             stored_bytes: self.stored_bytes + (stored * STORED_PER_TET) as u64,
             written_bytes: written(self.tets + tets),
+            operations: self.operations + PER_TET_OF_REGIONS * tets,
             regions_bytes: memory,
             ..self
         }

@@ -3,14 +3,15 @@
 use super::labels::AREA;
 use super::result::{CheckReport, Line, LineResult, Offender, OffenderKind, Outcome, Skipped, Tally};
 use crate::geometry::Vec3;
-use crate::second_order::{FACE_EDGES, SecondOrder, check_jacobians};
+use crate::second_order::{FACE_EDGES, SecondOrder, check_jacobians, volume_of};
 use crate::{TetMesh, VolumeMesh};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 impl CheckReport {
-    /// Adds the conditions on the midpoints of a second-order mesh to the report on the mesh of its corners. The areas of caps are
-    /// those within their curved rims.
+    /// Adds the conditions on the midpoints of a second-order mesh to the report on the mesh of its corners. Volumes and areas of caps
+    /// become those within the curved surfaces.
     ///
     /// ```
     /// use anastomesh_mesh::VolumeMesh;
@@ -28,7 +29,7 @@ impl CheckReport {
     /// If the mesh has no invalid vertex index, and an edge of it has no midpoint.
     #[must_use]
     pub fn with_second_order(self, volume: &VolumeMesh, second: &SecondOrder) -> Self {
-        let Self { counts, regions, mut lines, quality, intersections, .. } = self;
+        let Self { mut counts, mut regions, mut lines, quality, intersections, .. } = self;
         let invalid = [Line::FinitePoints, Line::IndicesInRange];
         let broken = lines.iter().find(|line| line.outcome == Outcome::Fail && invalid.contains(&line.line));
         if let Some(line) = broken.map(|line| line.line) {
@@ -36,6 +37,11 @@ impl CheckReport {
         } else {
             let mesh = &volume.mesh;
             lines.extend([shared_midpoints(mesh, second), positive_jacobians(mesh, second)]);
+            let volumes = volumes(volume, second);
+            counts.volume = volumes.values().sum();
+            for region in &mut regions {
+                region.volume = volumes.get(&region.id).copied().unwrap_or(0.0);
+            }
             let was_checked = |line: &&mut LineResult| matches!(line.outcome, Outcome::Pass | Outcome::Fail);
             if let Some(areas) = lines.iter_mut().find(|line| line.line == Line::CapArea).filter(was_checked) {
                 *areas = cap_areas(volume, second);
@@ -43,6 +49,17 @@ impl CheckReport {
         }
         Self { regions, ..Self::new(counts, lines, quality, intersections) }
     }
+}
+
+/// Volume of the elements of each block.
+fn volumes(volume: &VolumeMesh, second: &SecondOrder) -> BTreeMap<i32, f64> {
+    let VolumeMesh { mesh, tet_block, .. } = volume;
+    let of_tets: Vec<f64> = mesh.tets.par_iter().map(|tet| volume_of(&second.nodes(&mesh.points, *tet))).collect();
+    let mut volumes = BTreeMap::new();
+    for (i, own) in of_tets.into_iter().enumerate() {
+        *volumes.entry(tet_block.get(i).copied().unwrap_or(0)).or_insert(0.0) += own;
+    }
+    volumes
 }
 
 /// Compares the areas of caps with those of their discs. Each rim edge e with the offset o adds the area of a parabola, ⅔ |o × e|.

@@ -211,6 +211,12 @@ pub fn jacobian_above(nodes: &[Point3; 10], bound: f64) -> Sign {
     if is_decided { Sign::Above { least } } else { Sign::Undecided }
 }
 
+/// Volume of a ten-node element, in cubed units of length: a sixth of the mean of the coefficients, since all Bernstein
+/// polynomials have the same integral.
+pub(crate) fn volume_of(nodes: &[Point3; 10]) -> f64 {
+    coefficients(nodes).0.iter().sum::<f64>() / 120.0
+}
+
 /// Jacobian determinant of an element at a point with these barycentric coordinates; in floating point.
 #[cfg(test)]
 pub(super) fn jacobian_at(nodes: &[Point3; 10], at: [f64; 4]) -> f64 {
@@ -288,6 +294,16 @@ mod tests {
                 Sign::Undecided => prop_assert!(sampled.abs() < 0.05),
             }
         }
+    }
+
+    #[test]
+    fn volumes_are_those_of_a_quadrature() {
+        let nodes = element([[0.1, 0.0, 0.05], [0.0; 3], [0.02, 0.1, 0.0], [0.0; 3], [0.0, 0.0, 0.08], [0.03; 3]]);
+        // Exact for cubic polynomials (Keast 1986): the centre, and four points.
+        let points = (0..4).map(|i| std::array::from_fn(|j| if i == j { 0.5 } else { 1.0 / 6.0 }));
+        let sum: f64 = points.map(|at| 0.45 * jacobian_at(&nodes, at)).sum();
+        let volume = (sum - 0.8 * jacobian_at(&nodes, [0.25; 4])) / 6.0;
+        assert!((volume_of(&nodes) - volume).abs() < 1e-14, "{volume}");
     }
 
     #[test]

@@ -23,6 +23,7 @@ mod tests;
 pub use check::{Jacobians, check_jacobians};
 pub use curve::Curving;
 pub use edges::{FACE_EDGES, TET_EDGES};
+pub(crate) use jacobian::volume_of;
 pub use jacobian::{Sign, jacobian_above};
 pub use midpoints::SecondOrder;
 pub use read::{QuadraticMesh, QuadraticParts};
