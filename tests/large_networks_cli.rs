@@ -148,8 +148,8 @@ fn what_cannot_fit_is_refused_with_an_estimate_and_touches_nothing() {
         BAD_INPUT,
         &["need the whole mesh in memory", "--joint disc"],
     );
-    let regions = ["--wall", "0.2r", "--tissue", "box", "--memory", "80MiB"];
-    assert_says(&run(&tree, &out, &regions), BAD_INPUT, &["regions around the lumen need", "80.0 MiB", "--memory"]);
+    let regions = ["--wall", "0.2r", "--tissue", "box", "--memory", "12MiB"];
+    assert_says(&run(&tree, &out, &regions), BAD_INPUT, &["regions around the lumen need", "12.0 MiB", "--memory"]);
     for rho in ["0", "-3", "nan", "inf"] {
         assert_says(&run(&tree, &out, &["--rho", rho]), USAGE, &["rho"]);
     }

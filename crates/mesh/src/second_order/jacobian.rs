@@ -211,7 +211,7 @@ pub fn jacobian_above(nodes: &[Point3; 10], bound: f64) -> Sign {
     if is_decided { Sign::Above { least } } else { Sign::Undecided }
 }
 
-/// Volume of a ten-node element, in cubed units of length: a sixth of the mean of the coefficients, since all Bernstein
+/// Volume of a ten-node element, in cubed units of length. It is a sixth of the mean of the coefficients, since all Bernstein
 /// polynomials have the same integral.
 pub(crate) fn volume_of(nodes: &[Point3; 10]) -> f64 {
     coefficients(nodes).0.iter().sum::<f64>() / 120.0
