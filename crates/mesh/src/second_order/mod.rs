@@ -1,7 +1,7 @@
 //! Second-order meshes: a midpoint on each edge, on a smooth surface where the boundary is curved.
 //!
-//! A second-order mesh consists of a [`VolumeMesh`] and a [`SecondOrder`]. Its elements have ten nodes, its boundary faces six: the
-//! corners, then the midpoints in the order of [`TET_EDGES`] and [`FACE_EDGES`], which is VTK's order.
+//! A second-order mesh consists of a [`VolumeMesh`](crate::VolumeMesh) and a [`SecondOrder`]. Its elements have ten nodes, its
+//! boundary faces six: the corners, then the midpoints in the order of [`TET_EDGES`] and [`FACE_EDGES`], which is VTK's order.
 //!
 //! [`SecondOrder::balanced_points`] moves vertices whose flat faces enclose the right volume to the surface. [`SecondOrder::curved`] places the midpoints of labelled faces on a smooth surface and keeps all other edges straight. Each
 //! element is then proved to have a positive Jacobian determinant ([`jacobian_above`]), which makes its map invertible.
