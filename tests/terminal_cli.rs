@@ -86,7 +86,7 @@ fn options_come_from_a_file_and_the_plan_is_written() {
     assert_code(&mesh(&fixture("tree_30.swc"), &out, &[options[0], options[1], "--rho", "3.5"]), FINE);
     assert_eq!(entries(folder.path()), ["plan.toml", "tree.vtu", "tree_patches.csv", "tree_plan.toml"]);
     let resolved = fs::read_to_string(folder.path().join("tree_plan.toml")).expect("the plan");
-    for line in ["rho = 3.5", "quiet = true", "format = \"vtu\"", "# memory = \"2GiB\"", "# keep-going = false"] {
+    for line in ["rho = 3.5", "quiet = true", "format = \"vtu\"", "# stretch = 1", "# keep-going = false"] {
         assert!(resolved.lines().any(|l| l == line), "'{line}' in {resolved}");
     }
     // The resolved plan reproduces the mesh.

@@ -5,7 +5,7 @@ use super::limits::size;
 use super::log;
 use super::network::NetworkArgs;
 use super::numbers::number;
-use crate::pipeline::{MeshPlan, RunReport};
+use crate::pipeline::{Estimate, MeshPlan, RunReport, TooLarge};
 use crate::report::advice::advice;
 use anastomesh_io::network::NetworkFile;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
@@ -65,9 +65,9 @@ pub struct BlockArgs {
     /// bifurcations, values above 1 stretch tubes
     #[arg(long, value_name = "FACTOR|ARRAY", allow_negative_numbers = true)]
     pub size_at: Option<SizeArg>,
-    /// Memory limit, such as 2GiB or 500MB
-    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = size)]
-    pub memory: u64,
+    /// Memory limit, such as 2GiB or 500MB (default: 2GiB)
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    pub memory: Option<u64>,
     /// Move overlapping vessels apart before meshing, in at most N iterations
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "200")]
     pub refine: Option<usize>,
@@ -89,6 +89,19 @@ impl BlockArgs {
         advice(run, invalid, self.refine.is_some(), self.rho)
     }
 
+    /// Memory limit in bytes.
+    pub fn memory(&self) -> u64 {
+        self.memory.unwrap_or(MeshPlan::default().memory)
+    }
+
+    /// Checks that regions around the lumen fit into the memory limit, if one is given.
+    pub fn regions_fit(&self, estimate: &Estimate) -> Result<(), TooLarge> {
+        match self.memory {
+            Some(memory) if estimate.regions_bytes > memory => Err(TooLarge::Regions { estimate: *estimate, memory }),
+            _ => Ok(()),
+        }
+    }
+
     /// Plan of these options. `fuse`: vessels that still overlap after refinement are meshed as one lumen.
     pub fn plan(&self, fuse: bool) -> MeshPlan {
         MeshPlan {
@@ -96,7 +109,7 @@ impl BlockArgs {
             follow: self.follow,
             stretch: self.stretch,
             size_at: self.size_at.as_ref().and_then(SizeArg::planned),
-            memory: self.memory,
+            memory: self.memory(),
             fuse: self.refine.is_some() && fuse,
             keep_going: self.keep_going,
             ..MeshPlan::default()

@@ -98,9 +98,6 @@ pub fn fits(
 ) -> Result<(), TooLarge> {
     block_fits(estimate, plan)?;
     let (estimate, memory) = (*estimate, plan.memory);
-    if estimate.regions_bytes > memory {
-        return Err(TooLarge::Regions { estimate, memory });
-    }
     if !format.is_written_in_passes() {
         let bytes = (estimate.tets * GATHERED_PER_TET) as u64;
         if bytes > memory {

@@ -282,7 +282,7 @@ impl Args {
             grid: self.grid,
             domain: &self.domain,
             cures: &self.cures,
-            memory: self.blocks.memory,
+            memory: self.blocks.memory(),
             certificate: &self.certificate,
             common: &self.common,
         }
@@ -350,6 +350,7 @@ impl Args {
         let fits = |lumen: &Estimate| {
             let whole = with_regions(lumen, domain);
             self.order.fits(&whole, plan.memory)?;
+            self.blocks.regions_fit(&whole)?;
             limits::fits(&whole, &plan, &place, kept, (&self.output, format))
         };
         let made = run.mesh_into(&store, &fits, bars).map_err(|e| self.explain(e, &plan, bars))?;
@@ -371,7 +372,7 @@ impl Args {
         let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
         let options = WriteOptions::default()
             .format(self.format.format)
-            .memory((self.blocks.memory / 4) as usize)
+            .memory((self.blocks.memory() / 4) as usize)
             .grid(self.grid.options())
             .prisms(self.format.prisms)
             .parts(self.format.parts)
