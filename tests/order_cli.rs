@@ -9,7 +9,7 @@ use common::program::*;
 use common::surfaces::{save, sphere};
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Straight tube of radius 1 and length 20 along z.
 const TUBE: &str = "1 2 0 0 0 1 -1\n2 2 0 0 20 1 1\n";
@@ -41,6 +41,13 @@ fn jacobian(nodes: &[anastomesh::mesh::Point3; 10], at: [f64; 4]) -> f64 {
     (by[1] - by[0]).cross(&(by[2] - by[0])).dot(&(by[3] - by[0]))
 }
 
+/// Network of one straight vessel.
+fn tube(folder: &Path) -> PathBuf {
+    let network = folder.join("tube.swc");
+    fs::write(&network, TUBE).expect("written");
+    network
+}
+
 fn second_order(path: &Path) -> SecondOrder {
     read_mesh(path).expect("a mesh").second_order.expect("midpoints")
 }
@@ -48,8 +55,7 @@ fn second_order(path: &Path) -> SecondOrder {
 #[test]
 fn a_tube_has_the_volume_of_its_cylinder_in_every_format() {
     let folder = folder();
-    let network = folder.path().join("tube.swc");
-    fs::write(&network, TUBE).expect("written");
+    let network = tube(folder.path());
     let linear = folder.path().join("linear.vtu");
     assert_code(&mesh(&network, &linear, &["--rho", "4"]), FINE);
     let linear = read_mesh(&linear).expect("a mesh");
@@ -123,8 +129,7 @@ fn regions_share_the_midpoints_of_their_interfaces() {
 fn conversion_keeps_midpoints_where_the_format_has_them() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("tube.swc"), TUBE).expect("written");
-    assert_code(&mesh(&at("tube.swc"), &at("tube.vtu"), &["--order", "2"]), FINE);
+    assert_code(&mesh(&tube(folder.path()), &at("tube.vtu"), &["--order", "2"]), FINE);
     let convert = |to: &str| run("convert", &[&at("tube.vtu")], &["-o", at(to).to_str().expect("a path")]);
     assert_code(&convert("other.msh"), FINE);
     assert_eq!(second_order(&at("other.msh")), second_order(&at("tube.vtu")));
@@ -135,8 +140,7 @@ fn conversion_keeps_midpoints_where_the_format_has_them() {
 #[test]
 fn folded_elements_and_mixed_orders_are_faults() {
     let folder = folder();
-    let network = folder.path().join("tube.swc");
-    fs::write(&network, TUBE).expect("written");
+    let network = tube(folder.path());
     let out = folder.path().join("tube.msh2");
     assert_code(&mesh(&network, &out, &["--order", "2"]), FINE);
     let text = fs::read_to_string(&out).expect("a file");

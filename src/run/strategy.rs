@@ -95,12 +95,14 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    fn is_of_block(&self) -> bool {
-        matches!(&self.error, RunError::TooLarge(error) if matches!(**error, TooLarge::Block { .. }))
-    }
-
-    fn is_of_regions(&self) -> bool {
-        matches!(&self.error, RunError::TooLarge(error) if matches!(**error, TooLarge::Regions { .. }))
+    /// True if the limit on memory is exceeded even by a refined network. `lengthens`: refinement lengthens vessels.
+    fn is_final(&self, lengthens: impl FnOnce() -> bool) -> bool {
+        let RunError::TooLarge(error) = &self.error else { return false };
+        match **error {
+            TooLarge::Block { .. } => !lengthens(),
+            TooLarge::Regions { .. } => true,
+            TooLarge::Whole { .. } | TooLarge::Disk { .. } => false,
+        }
     }
 
     pub(super) fn into_error(self) -> MeshingError {
@@ -151,9 +153,7 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
         }
         Some(Err(failure @ Failure { error: RunError::Cancelled, .. })) => return Err(failure.into_error()),
         // Blocks become smaller only if vessels are lengthened, so that more of them can be cut.
-        Some(Err(failure @ Failure { error: RunError::TooLarge(_), .. }))
-            if failure.is_of_regions() || failure.is_of_block() && !meshing.lengthens(networks) =>
-        {
+        Some(Err(failure)) if failure.is_final(|| meshing.lengthens(networks)) => {
             return Err(failure.into_error());
         }
         other => other.and_then(Result::ok),

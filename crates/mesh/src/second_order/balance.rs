@@ -26,6 +26,9 @@ const LEAST_VOLUME: f64 = 0.25;
 /// Number of times the displacement of a vertex is halved before the vertex stays.
 const HALVINGS: u8 = 4;
 
+/// Maximum number of rounds. Afterwards, all vertices stay.
+const ROUNDS: usize = 100;
+
 impl SecondOrder {
     /// Positions of the vertices of a mesh, moved so that curved surfaces enclose the volume of the flat faces, to first order. The
     /// vertices of caps and other planes move within these. Tetrahedra stay positive. The caller checks the boundary.
@@ -37,7 +40,7 @@ impl SecondOrder {
         let points = &volume.mesh.points;
         let mut shifts = shifts(volume);
         let mut halvings = vec![0_u8; points.len()];
-        loop {
+        for _ in 0..ROUNDS {
             let moved: Vec<Point3> = points.par_iter().zip(&shifts).map(|(p, shift)| p + shift).collect();
             let bad = squeezed(volume, &moved, &shifts);
             if bad.is_empty() {
@@ -49,6 +52,7 @@ impl SecondOrder {
                 shifts[v] *= if halvings[v] > HALVINGS { 0.0 } else { 0.5 };
             }
         }
+        points.clone()
     }
 }
 

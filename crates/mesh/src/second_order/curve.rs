@@ -15,6 +15,9 @@ const LEAST_SCALED: f64 = 0.1;
 /// Number of times the offset of an edge is halved before the edge becomes straight.
 const HALVINGS: u8 = 4;
 
+/// Maximum number of rounds. Afterwards, all edges become straight.
+const ROUNDS: usize = 100;
+
 /// Counts of midpoints, and the distortion of the elements of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Curving {
@@ -55,14 +58,15 @@ fn curve(volume: &VolumeMesh, edges: Edges, offsets: Vec<Vec3>) -> (SecondOrder,
         offsets,
     };
     state.place();
-    // Each round halves an offset that is not zero. The number of halvings of each is limited, and so are the rounds.
-    loop {
+    for _ in 0..ROUNDS {
         let bad = state.distorted();
         if bad.is_empty() {
             return state.finish();
         }
         state.pull(&bad);
     }
+    state.straighten();
+    state.finish()
 }
 
 /// Midpoints between two rounds.
@@ -121,6 +125,17 @@ impl State<'_> {
             self.offsets[edge] *= factor;
             self.touched[edge] = true;
         }
+        self.place();
+    }
+
+    /// Makes all edges straight, and so all elements valid.
+    fn straighten(&mut self) {
+        for (offset, halvings) in self.offsets.iter_mut().zip(&mut self.halvings) {
+            *halvings += u8::from(*offset != Vec3::zeros());
+            *offset = Vec3::zeros();
+        }
+        self.touched.fill(true);
+        self.least.fill(1.0);
         self.place();
     }
 

@@ -158,16 +158,20 @@ impl Interface<'_> {
         all
     }
 
+    /// Triangles of the region beyond the band.
+    fn beyond(&self) -> impl Iterator<Item = &[u32; 3]> {
+        let mut in_band = vec![false; self.surface.triangles.len()];
+        self.band.triangles.iter().for_each(|&t| in_band[t as usize] = true);
+        self.surface.triangles.iter().zip(in_band).filter(|(_, in_band)| !in_band).map(|(t, _)| t)
+    }
+
     /// True if no triangle beyond the band comes near the interface.
     fn is_clear(&self, faces: &[[u32; 3]]) -> bool {
         let boxes: Vec<Aabb> =
             faces.iter().map(|f| Aabb::of_points(f.map(|v| &self.mesh.points[v as usize]))).collect();
         let whole = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         let bvh = Bvh::of(boxes);
-        let mut in_band = vec![false; self.surface.triangles.len()];
-        self.band.triangles.iter().for_each(|&t| in_band[t as usize] = true);
-        let beyond = self.surface.triangles.iter().zip(in_band).filter(|(_, in_band)| !in_band);
-        beyond.map(|(t, _)| Aabb::of_points(t.map(|v| &self.surface.points[v as usize]))).all(|own| {
+        self.beyond().map(|t| Aabb::of_points(t.map(|v| &self.surface.points[v as usize]))).all(|own| {
             let mut is_clear = true;
             if own.overlaps(&whole) {
                 bvh.query(&own, |_| is_clear = false);
@@ -187,9 +191,7 @@ impl Interface<'_> {
         let own: Vec<usize> = halves.iter().map(Vec::len).collect();
         let mut number = vec![NONE; self.surface.points.len()];
         (0..).zip(&self.band.points).for_each(|(i, &v)| number[v as usize] = i);
-        let mut in_band = vec![false; self.surface.triangles.len()];
-        self.band.triangles.iter().for_each(|&t| in_band[t as usize] = true);
-        for (t, _) in self.surface.triangles.iter().zip(in_band).filter(|(_, in_band)| !in_band) {
+        for t in self.beyond() {
             let side = Side::at(self.plane.distance(&self.surface.points[t[0] as usize]));
             let local = t.map(|v| number[v as usize]);
             if local.iter().filter(|&&v| v != NONE).count() > 1 {

@@ -48,6 +48,12 @@ impl<'a> Improver<'a> {
         made
     }
 
+    /// Fractions of the offset at which the copies of a vertex lie.
+    pub fn depths_at(&self, v: usize) -> &[f64] {
+        let layers = self.numbers.layers() as usize;
+        &self.depths[v * layers..][..layers]
+    }
+
     /// Moves outer positions where prisms at some triangles are poor. Each move raises the least quality at its vertex.
     pub fn improve(&self, triangles: &[u32], outer: &mut [Point3]) {
         let mut watched = triangles.to_vec();
@@ -141,7 +147,6 @@ impl<'a> Improver<'a> {
 
     /// Least quality of the tetrahedra at a wall triangle: minimum height over longest edge, negative if inverted.
     fn quality(&self, triangle: [u32; 3], outer: [Point3; 3]) -> f64 {
-        let layers = self.numbers.layers() as usize;
         let place = |copy: u32| {
             let origin = self.numbers.origin(copy);
             let base = &self.surface.points[origin as usize];
@@ -150,7 +155,7 @@ impl<'a> Improver<'a> {
             }
             let i = triangle.iter().position(|&v| v == origin).unwrap_or_default();
             let layer = (copy - self.numbers.copy(origin, 1)) as usize;
-            toward(base, &outer[i], self.depths[origin as usize * layers + layer])
+            toward(base, &outer[i], self.depths_at(origin as usize)[layer])
         };
         self.numbers.tets_at(triangle).map(|tet| flatness(tet.map(place))).fold(f64::INFINITY, f64::min)
     }

@@ -4,7 +4,7 @@ use super::directions::directions;
 use super::heights::heights;
 use super::improve::Improver;
 use super::outside::Outside;
-use super::shell::{Given, depths};
+use super::shell::Given;
 use crate::error::{Obstacle, Stuck, TetError};
 use crate::layers::{Numbers, Places, Ways, rims, toward};
 use crate::progress::Watch;
@@ -63,8 +63,7 @@ pub(super) fn settle(given: &Given, watch: &Watch) -> Result<Settled, TetError> 
         let mut positions = Vec::with_capacity(numbers.len() as usize + around.map_or(0, |around| around.points.len()));
         positions.extend_from_slice(points);
         for v in (0..points.len()).filter(|&v| on_wall[v]) {
-            let copy = |depth| toward(&points[v], &places.wanted[v], depth);
-            positions.extend(depths(shells, v).into_iter().map(copy));
+            positions.extend(improver.depths_at(v).iter().map(|&depth| toward(&points[v], &places.wanted[v], depth)));
         }
         let mut obstacles = numbers.turned(wall, &positions);
         let reason = if obstacles.is_empty() { Stuck::Intersection } else { Stuck::Layer };
