@@ -6,6 +6,10 @@ use rayon::prelude::*;
 
 /// Steps towards the centre of the smallest cap that contains all normals at a vertex.
 const STEPS: u32 = 40;
+/// Steps where the direction is not clear after the first. The error is about the reciprocal of their number.
+const MANY_STEPS: u32 = 4000;
+/// Steepness of a clear direction.
+const CLEAR: f64 = 0.1;
 /// Smoothing passes over the inward directions.
 const PASSES: usize = 3;
 /// Minimum steepness of a smoothed direction, relative to that before.
@@ -18,7 +22,7 @@ pub struct Directions {
     /// Outward normal of each triangle of the wall.
     normals: Vec<Vec3>,
     /// Triangles at each vertex.
-    at_vertex: Incidence,
+    pub at_vertex: Incidence,
 }
 
 impl Directions {
@@ -96,7 +100,10 @@ fn inward_direction(normals: &[Vec3]) -> Vec3 {
 fn steepest(normals: &[Vec3]) -> Option<(f64, Vec3)> {
     let mut middle: Vec3 = -normals.iter().sum::<Vec3>() / normals.len().max(1) as f64;
     let mut best: Option<(f64, Vec3)> = None;
-    for step in 1..=STEPS {
+    for step in 1..=MANY_STEPS {
+        if step > STEPS && best.is_some_and(|(seen, _)| seen >= CLEAR) {
+            break;
+        }
         let Some(way) = middle.try_normalize(0.0) else { break };
         // The furthest of unit vectors has the least cosine.
         let cosines = normals.iter().map(|normal| (-way.dot(normal), normal));

@@ -35,7 +35,7 @@ impl Sides {
 
 /// Unit vectors that lead away from a wall, whose triangles are seen from inside, and where their vertices may go. At the
 /// rim of a cap they lie in its plane, or lead to its front.
-pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> (Vec<Vec3>, Sides) {
+pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u32>]) -> (Directions, Sides) {
     let mut ways = Directions::new(&surface.points, wall);
     let mut is_held = vec![false; surface.points.len()];
     let mut sides = Sides::default();
@@ -54,7 +54,7 @@ pub(super) fn directions(surface: &TriMesh, wall: &[[u32; 3]], caps: &[Option<u3
         }
     }
     ways.smooth(wall, &is_held);
-    (ways.ways, sides)
+    (ways, sides)
 }
 
 /// Direction at a vertex of a rim: in the plane of the cap if that is steep enough, else to its front.

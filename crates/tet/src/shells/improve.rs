@@ -2,9 +2,8 @@
 
 use super::directions::{Side, Sides};
 use super::shell::{Shell, depths};
-use crate::layers::{Numbers, toward};
+use crate::layers::{Directions, Numbers, toward};
 use anastomesh_mesh::TriMesh;
-use anastomesh_mesh::adjacency::Incidence;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use rayon::prelude::*;
 
@@ -14,6 +13,9 @@ const POOR: f64 = 0.4;
 const PASSES: usize = 4;
 /// Steps of a vertex, relative to its thickness, in each pass.
 const STEPS: [f64; 3] = [0.3, 0.1, 0.03];
+/// Minimum steepness of an offset, relative to the direction of its vertex. Where all offsets are steep, thin prisms are
+/// positive. Offsets that are not may improve inverted prisms, but these stay inverted at any thickness.
+const KEEPS: f64 = 0.5;
 /// Directions of a step beside the outer position.
 const TURNS: u32 = 8;
 
@@ -24,12 +26,12 @@ pub(super) struct Improver<'a> {
     numbers: &'a Numbers,
     /// Fractions of the offset at which the copies of each vertex lie.
     depths: Vec<f64>,
+    /// Outward direction of each vertex, and the triangles there.
+    directions: &'a Directions,
     /// Region in which the outer position of each vertex may lie.
     sides: &'a Sides,
     /// Quality of a right prism with the thickness wanted, at each triangle.
     ideal: Vec<f64>,
-    /// Triangles at each vertex.
-    at_vertex: Incidence,
 }
 
 impl<'a> Improver<'a> {
@@ -38,12 +40,11 @@ impl<'a> Improver<'a> {
         (surface, wall): (&'a TriMesh, &'a [[u32; 3]]),
         numbers: &'a Numbers,
         shells: &[Shell],
-        sides: &'a Sides,
+        (directions, sides): (&'a Directions, &'a Sides),
         heights: &[f64],
     ) -> Self {
         let depths = (0..surface.points.len()).flat_map(|v| depths(shells, v)).collect();
-        let at_vertex = Incidence::of_cells(wall, surface.points.len());
-        let mut made = Self { surface, wall, numbers, depths, sides, ideal: Vec::new(), at_vertex };
+        let mut made = Self { surface, wall, numbers, depths, directions, sides, ideal: Vec::new() };
         made.ideal = wall.par_iter().map(|t| made.right_prism(*t, heights)).collect();
         made
     }
@@ -73,7 +74,8 @@ impl<'a> Improver<'a> {
 
     /// Triangles at some vertices.
     pub fn around_vertices(&self, vertices: impl IntoIterator<Item = u32>) -> Vec<u32> {
-        let mut triangles: Vec<u32> = vertices.into_iter().flat_map(|v| self.at_vertex.get(v)).copied().collect();
+        let mut triangles: Vec<u32> =
+            vertices.into_iter().flat_map(|v| self.directions.at_vertex.get(v)).copied().collect();
         triangles.sort_unstable();
         triangles.dedup();
         triangles
@@ -105,7 +107,8 @@ impl<'a> Improver<'a> {
         let side = match self.sides.at(v) {
             Side::Flat(normal) => {
                 let side = way.cross(&normal);
-                return vec![nearer, from + side * step, from - side * step];
+                let all = [nearer, from + side * step, from - side * step];
+                return all.into_iter().filter(|place| self.is_steep(v, place)).collect();
             }
             Side::Free | Side::Front(_) => any_normal(&way),
         };
@@ -122,13 +125,20 @@ impl<'a> Improver<'a> {
         std::iter::once(nearer)
             .chain(shifts.iter().map(|s| from + s))
             .chain(shifts.iter().map(|s| nearer + s))
-            .filter(may_be_at)
+            .filter(|place| may_be_at(place) && self.is_steep(v, place))
             .collect()
+    }
+
+    /// True if an outer position leads away from all triangles of its vertex.
+    fn is_steep(&self, v: usize, place: &Point3) -> bool {
+        let least = KEEPS * self.directions.steepness(v, &self.directions.ways[v]);
+        let way = (place - self.surface.points[v]).try_normalize(0.0);
+        way.is_some_and(|way| self.directions.steepness(v, &way) >= least)
     }
 
     /// Least relative quality of the prisms at a vertex.
     fn around(&self, v: usize, outer: &[Point3]) -> f64 {
-        self.at_vertex.get(v as u32).iter().map(|&t| self.relative(t, outer)).fold(f64::INFINITY, f64::min)
+        self.directions.at_vertex.get(v as u32).iter().map(|&t| self.relative(t, outer)).fold(f64::INFINITY, f64::min)
     }
 
     /// Quality at a triangle, relative to that of a right prism.

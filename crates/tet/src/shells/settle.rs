@@ -34,18 +34,19 @@ pub(super) struct Settled {
 pub(super) fn settle(given: &Given, watch: &Watch) -> Result<Settled, TetError> {
     let Given { surface, wall, caps, shells, around } = *given;
     let points = &surface.points;
-    let (ways, sides) = directions(surface, wall, caps);
+    let (directions, sides) = directions(surface, wall, caps);
+    let ways = &directions.ways;
     let stuck = |triangle: [u32; 3], reason| Err(TetError::Stuck { part: Obstacle::Triangle(triangle), reason });
     if let Some(&t) = wall.iter().find(|t| t.iter().any(|&v| ways[v as usize] == Vec3::zeros())) {
         return stuck(t, Stuck::Layer);
     }
     let on_wall = vertices_of(wall, points.len());
     let wanted: Vec<f64> = (0..points.len()).map(|v| shells.iter().map(|shell| shell.thickness[v]).sum()).collect();
-    let heights = heights(&joined(surface, around), wall, &ways, &wanted);
+    let heights = heights(&joined(surface, around), wall, ways, &wanted);
     let is_rim = rims(surface, |t| caps[t].is_none());
     let numbers = Numbers::new(on_wall.iter().copied(), is_rim.clone(), shells.iter().map(|s| s.layers).sum());
     let mut outside = Outside::new(&numbers, given);
-    let improver = Improver::new((surface, wall), &numbers, shells, &sides, &heights);
+    let improver = Improver::new((surface, wall), &numbers, shells, (&directions, &sides), &heights);
     let mut places = Places {
         surface,
         wall,

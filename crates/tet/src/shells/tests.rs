@@ -106,3 +106,21 @@ fn invalid_shells_are_refused() {
     let fault = Shells::around(&ball, &caps, &shell, Some(&beside), &());
     assert!(matches!(fault, Err(TetError::Stuck { .. })), "{fault:?}");
 }
+
+#[test]
+fn a_crumpled_ball_gets_shells() {
+    // Radii are random, so the radial directions lead away from all triangles: thin shells are possible everywhere.
+    for seed in [0, 3, 5, 9_u64] {
+        let mut ball = sphere_surface(3);
+        let mut state = seed;
+        for p in &mut ball.points {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            *p *= 0.15 + (state >> 40) as f64 / f64::from(1 << 24);
+        }
+        let caps = vec![None; ball.triangles.len()];
+        let made = Shells::around(&ball, &caps, &[Shell::new(vec![1.0; ball.points.len()])], None, &());
+        let made = made.unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
+        let faults: Vec<_> = check_tets(&mesh(&ball, &made), None).failed().map(|line| line.line).collect();
+        assert!(faults.is_empty(), "seed {seed}: {faults:?}");
+    }
+}
