@@ -267,9 +267,10 @@ def main():
             axis = straight_axis if tube == "straight" else bent_axis
             length = LENGTH if tube == "straight" else 2 * PIECE + BEND * math.pi / 2
             exact = math.pi / 8 / length if tube == "straight" else bent_reference()
-            always = [] if tube == "straight" else ["--axis-tolerance", "0.002"]
+            fine_axis = [] if tube == "straight" else ["--axis-tolerance", "0.002"]
             for rho in given.rho.split(","):
                 for extra in given.options.split(";"):
+                    always = [] if "--axis-tolerance" in extra else fine_axis
                     for order in ("1", "2"):
                         command = [given.program, "mesh", folder / "tube.swc", "-o", folder / "tube.vtu", "--rho", rho, "--order", order,
                                    "-q", *always, *extra.split()]
