@@ -4,8 +4,8 @@
 
 Makes straight tubes of radius 1 and length 20 at --rho 2.5, 3, 4 and 6 with both orders, and compares volumes with the exact cylinder. The
 volume of second-order elements is integrated with VTK's cells and, from the nodes that meshio reads, with a quadrature of degree 3.
-Gmsh gives the least Jacobian determinant and the least scaled Jacobian of all elements. The same follows for each NETWORK,
-at --rho 3 and without an exact volume. Needs pyvista, meshio and numpy; gmsh if it is installed.
+Gmsh gives the least Jacobian determinant and the least scaled Jacobian of all elements. Volumes of lumen and wall follow, at --rho 3 with
+`--wall 0.2r` and `--layers 3`. Then the same comparison for each NETWORK, at --rho 3 and without an exact volume. Needs pyvista, meshio and numpy; gmsh if it is installed.
 """
 
 import json
@@ -119,6 +119,25 @@ def compare(program, network, folder, exact=None, rho="3"):
             print(f"  volume in {reader}: {found:.6f}{change}")
 
 
+def regions(program, tube, folder):
+    """Volumes of lumen and wall of both orders, compared with exact ones."""
+    for options in (["--layers", "3"], ["--wall", "0.2r"], ["--wall", "0.2r", "--layers", "3"]):
+        for order in ("1", "2"):
+            mesh(program, tube, folder / "regions.vtu", "--order", order, *options)
+            read = meshio.read(folder / "regions.vtu")
+            tets = next(i for i, block in enumerate(read.cells) if block.type.startswith("tetra"))
+            cells, number = read.cells[tets].data, read.cell_data.get("region", {tets: None})[tets]
+            parts = {"lumen": slice(None)} if number is None else {"lumen": number == 1, "wall": number == 2}
+            print(f"{' '.join(options)}, order {order}:", end="")
+            for name, part in parts.items():
+                corners = read.points[cells[part][:, :4]]
+                found = np.linalg.det(corners[:, 1:] - corners[:, :1]).sum() / 6
+                found = volume(read.points, cells[part]) if order == "2" else found
+                exact = math.pi * 20 * (1 if name == "lumen" else 1.2**2 - 1)
+                print(f" {name} {100 * (found / exact - 1):+.2f} %", end="")
+            print()
+
+
 def main():
     program, networks = Path(sys.argv[1]), [Path(name) for name in sys.argv[2:]]
     with tempfile.TemporaryDirectory() as name:
@@ -127,6 +146,7 @@ def main():
         tube.write_text(TUBE)
         for rho in ("2.5", "3", "4", "6"):
             compare(program, tube, folder, math.pi * 20, rho)
+        regions(program, tube, folder)
         for network in networks:
             compare(program, network, folder)
 
