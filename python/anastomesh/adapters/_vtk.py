@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkCellArray, vtkDataSet, vtkPolyData, vtkUnstructuredGrid
 
-from .._arrays import Array, Floats, Ints
+from .._arrays import Floats, Ints
 from .._mesh import Mesh
 from .._surface_verbs import tetrahedralize
 from ..options import TetrahedralizeOptions
@@ -49,30 +49,48 @@ def point_array(data: vtkDataSet, name: str) -> Floats | None:
     return None if values is None else np.asarray(vtk_to_numpy(values), np.float64)
 
 
+def surface_of(points: Floats, triangles: Ints, ids: Ints | None, name: str) -> vtkPolyData:
+    """Poly data of triangles, with their ids as the cell array ``name``."""
+    surface = vtkPolyData()
+    surface.SetPoints(_points(points))
+    surface.SetPolys(_cells(np.full(len(triangles), 3), triangles.ravel()))
+    if ids is not None:
+        add_cell_array(surface, name, numpy_to_vtkIdTypeArray(ids, deep=True))
+    return surface
+
+
 def grid_of(mesh: Mesh, ids: str, *, tets: bool = True, triangles: bool = True) -> vtkUnstructuredGrid:
     """A grid of the tetrahedra, then the boundary triangles; the cell array ``ids`` is 0 in tetrahedra, then the markers."""
     inside, boundary = mesh.tets[: None if tets else 0], mesh.triangles[: None if triangles else 0]
-    markers = np.zeros(len(boundary), np.int32) if mesh.markers is None else mesh.markers[: len(boundary)]
+    markers = np.zeros(len(boundary), np.int64) if mesh.markers is None else mesh.markers[: len(boundary)]
     sizes = np.repeat([4, 3], [len(inside), len(boundary)])
-    cells = vtkCellArray()
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64), deep=True),
-        numpy_to_vtkIdTypeArray(np.concatenate([inside.ravel(), boundary.ravel()]).astype(np.int64), deep=True),
-    )
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(mesh.points), deep=True))
     grid = vtkUnstructuredGrid()
-    grid.SetPoints(points)
-    grid.SetCells(numpy_to_vtk(np.where(sizes == 4, VTK_TETRA, VTK_TRIANGLE).astype(np.uint8), deep=True), cells)
-    add_cell_array(grid, ids, np.concatenate([np.zeros(len(inside), np.int32), markers.astype(np.int32)]))
+    grid.SetPoints(_points(mesh.points))
+    kinds = np.where(sizes == 4, VTK_TETRA, VTK_TRIANGLE).astype(np.uint8)
+    grid.SetCells(numpy_to_vtk(kinds, deep=True), _cells(sizes, np.concatenate([inside.ravel(), boundary.ravel()])))
+    of_cells = np.concatenate([np.zeros(len(inside), np.int64), markers.astype(np.int64)])
+    add_cell_array(grid, ids, numpy_to_vtkIdTypeArray(of_cells, deep=True))
     return grid
 
 
-def add_cell_array(data: vtkDataSet, name: str, values: Array) -> None:
+def add_cell_array(data: vtkDataSet, name: str, array: vtkDataArray) -> None:
     """Adds an array with a value for each cell."""
-    array = numpy_to_vtk(values, deep=True)
     array.SetName(name)
     data.GetCellData().AddArray(array)
+
+
+def _points(coordinates: Floats) -> vtkPoints:
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(coordinates), deep=True))
+    return points
+
+
+def _cells(sizes: Ints, corners: Ints) -> vtkCellArray:
+    """Cells with the given numbers of points."""
+    cells = vtkCellArray()
+    offsets = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(corners.astype(np.int64), deep=True))
+    return cells
 
 
 def _numbers(array: object) -> Ints:

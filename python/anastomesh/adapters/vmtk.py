@@ -11,15 +11,14 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from vmtk import pypemain, vtkvmtk
+from vmtk import pypemain
 from vmtk import vmtkscripts as scripts
 from vmtk import vmtktetgen as original
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
-from vtkmodules.vtkFiltersCore import vtkTriangleFilter
-from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
 from .._errors import Error
-from ._vtk import VtkSurface, add_cell_array, fill, grid_of, point_array
+from ._vtk import VtkSurface, add_cell_array, cell_array, fill, grid_of, point_array, surface_of, triangles_of
 
 #: Members of ``vmtktetgen`` that ask for another result, with their only accepted value.
 _ONLY = {"Refine": 0, "Coarsen": 0, "VarVolume": 0, "RegionAttrib": 0, "Order": 1}
@@ -69,7 +68,7 @@ class vmtkAnastomesh(original.vmtkTetGen):  # type: ignore[misc]
         of_cells = np.zeros(self.Mesh.GetNumberOfCells())
         if self.OutputVolumeElements:
             of_cells[: len(volumes)] = volumes
-        add_cell_array(self.Mesh, self.TetrahedronVolumeArrayName, of_cells)
+        add_cell_array(self.Mesh, self.TetrahedronVolumeArrayName, numpy_to_vtk(of_cells, deep=True))
 
     def _size(self, surface: VtkSurface) -> float | None:
         """Largest value of the sizing function. Smaller ones belong to smaller triangles, from which edge lengths grow."""
@@ -82,16 +81,16 @@ class vmtkAnastomesh(original.vmtkTetGen):  # type: ignore[misc]
         return float(sizes.max())
 
 
-def _capped(surface: vtkUnstructuredGrid, ids: str) -> vtkPolyData:
+def _capped(surface: VtkSurface, ids: str) -> vtkPolyData:
     """The surface with a cap on each hole; the ids of caps follow those of the surface."""
-    outside, caps, triangles = vtkGeometryFilter(), vtkvmtk.vtkvmtkSimpleCapPolyData(), vtkTriangleFilter()
-    outside.SetInputData(surface)
-    caps.SetInputConnection(outside.GetOutputPort())
-    caps.SetCellEntityIdsArrayName(ids)
-    caps.SetCellEntityIdOffset(1)
-    triangles.SetInputConnection(caps.GetOutputPort())
-    triangles.Update()
-    return triangles.GetOutput()
+    capper = scripts.vmtkSurfaceCapper()
+    # Offsets of cells that VMTK appends to must be stored. Those of VTK's filters may be implicit.
+    capper.Surface = surface_of(*triangles_of(surface), cell_array(surface, ids), ids)
+    capper.CellEntityIdsArrayName = ids
+    capper.Method, capper.Interactive, capper.LogOn = "centerpoint", 0, 0
+    capper.Execute()
+    capped: vtkPolyData = capper.Surface
+    return capped
 
 
 def install() -> None:
