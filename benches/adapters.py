@@ -215,7 +215,7 @@ def fills(backends, paths, limit):
 
 
 def trees(limit):
-    print("| vessels | svv | adapter | adapter, `wall=\"0.2r\"` |\n|---|---|---|---|")
+    print('| vessels | svv | adapter | adapter, `wall="0.2r"` |\n|---|---|---|---|')
     for added in TREES:
         made = [in_process("tree", name, added, limit) for name in ("svv", "lumen", "walls")]
         vessels = next((m["vessels"] for m in made if not isinstance(m, str)), "")

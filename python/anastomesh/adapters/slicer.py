@@ -2,10 +2,10 @@
 
 In the Python console of 3D Slicer::
 
+    from anastomesh.adapters import slicer as mesher
     from CfdMeshGeneratorLib import MeshingPipeline
-    from anastomesh.adapters import slicer
 
-    MeshingPipeline.Netgen = slicer
+    MeshingPipeline.Netgen = mesher
     mesh, surface = MeshingPipeline.MeshingPipeline().generateMesh(model.GetPolyData(), mesher="netgen", targetEdgeLength=1.0)
 """
 
