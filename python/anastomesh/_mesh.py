@@ -162,10 +162,8 @@ class Mesh:
             triangle_blocks=self._blocks if len(triangles) else None,
         )
         if self._notes or self.patches:
-            known = {patch["id"]: patch for patch in self._notes.get("patches", [])}
-            patches = [{**known.get(patch.id, {}), **_said(patch)} for patch in self.patches]
             with open(os.path.join(path, "mesh.json"), "w", encoding="utf-8") as file:
-                json.dump({**self._notes, "patches": patches}, file)
+                json.dump({**self._notes, "patches": [_said(patch) for patch in self.patches]}, file)
         return path
 
     @classmethod

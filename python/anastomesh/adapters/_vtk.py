@@ -1,8 +1,6 @@
-"""Surfaces of vtk, filled with tetrahedra."""
+"""Surfaces and grids of vtk."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -11,20 +9,9 @@ from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkCellArray,
 
 from .._arrays import Floats, Ints
 from .._mesh import Mesh
-from .._surface_verbs import tetrahedralize
-from ..options import TetrahedralizeOptions
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 #: Surfaces of vtk: poly data, or a grid of triangles.
 VtkSurface = vtkPolyData | vtkUnstructuredGrid
-
-
-def fill(surface: VtkSurface, ids: str, **options: Unpack[TetrahedralizeOptions]) -> Mesh:
-    """Fills a closed surface; the cell array ``ids``, if the surface has it, becomes the markers of the triangles."""
-    points, triangles = triangles_of(surface)
-    return tetrahedralize(points, triangles, markers=cell_array(surface, ids), **options)
 
 
 def triangles_of(surface: VtkSurface) -> tuple[Floats, Ints]:

@@ -11,14 +11,14 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from vmtk import pypemain
 from vmtk import vmtkscripts as scripts
 from vmtk import vmtktetgen as original
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
 from .._errors import Error
-from ._vtk import VtkSurface, add_cell_array, cell_array, fill, grid_of, point_array, surface_of, triangles_of
+from .._surface_verbs import tetrahedralize
+from ._vtk import VtkSurface, add_cell_array, cell_array, grid_of, point_array, surface_of, triangles_of
 
 #: Members of ``vmtktetgen`` that ask for another result, with their only accepted value.
 _ONLY = {"Refine": 0, "Coarsen": 0, "VarVolume": 0, "RegionAttrib": 0, "Order": 1}
@@ -47,9 +47,11 @@ class vmtkAnastomesh(original.vmtkTetGen):  # type: ignore[misc]
                 self.PrintError(f"Error: {member}={getattr(self, member)} is not supported: use {value}")
         surface = _capped(self.Mesh, self.CellEntityIdsArrayName) if self.GenerateCaps else self.Mesh
         try:
-            mesh = fill(
-                surface,
-                self.CellEntityIdsArrayName,
+            points, triangles = triangles_of(surface)
+            mesh = tetrahedralize(
+                points,
+                triangles,
+                markers=cell_array(surface, self.CellEntityIdsArrayName),
                 plc=bool(self.PLC),
                 refine=bool(self.Quality),
                 max_radius_edge=self.MinRatio if self.Quality else None,
@@ -101,7 +103,9 @@ def install() -> None:
 
 def main() -> int:
     """Runs the command ``vmtk`` with the script."""
-    # The class of the imported module, not of the one that runs as a program.
+    # The imported module, not the one that runs as a program.
+    from vmtk import pypemain
+
     from anastomesh.adapters import vmtk
 
     vmtk.install()
