@@ -142,6 +142,20 @@ def test_vmtk_script_fills_a_surface(vmtk: Any) -> None:
     assert set(made.celltypes) == {10} and 0 < made.cell_data["TetrahedronVolume"].max() <= 0.002
 
 
+def test_vmtk_script_reads_the_sizing_function(vmtk: Any) -> None:
+    def filled(size: float) -> int:
+        script = vmtk.vmtkAnastomesh()
+        script.LogOn, script.ExitOnError, script.Mesh = 0, 0, grid(tube())
+        script.NoBoundarySplit, script.UseSizingFunction = 1, 1
+        with pytest.raises(RuntimeError, match="no point array 'VolumeSizingFunction'"):
+            script.Execute()
+        script.Mesh.point_data["VolumeSizingFunction"] = np.full(script.Mesh.n_points, size)
+        script.Execute()
+        return int(script.Mesh.GetNumberOfCells())
+
+    assert filled(0.2) > 2 * filled(0.6)
+
+
 def test_vmtk_script_closes_holes(vmtk: Any) -> None:
     script = vmtk.vmtkAnastomesh()
     script.LogOn, script.ExitOnError, script.Mesh = 0, 0, grid(tube(closed=False))
@@ -193,6 +207,10 @@ def test_slicer_back_end_keeps_the_surface() -> None:
     assert volumes(points, tets).min() > 0 and volumes(points, tets).sum() == pytest.approx(surface.volume, rel=1e-5)
     finer = slicer.tetrahedralize(surface.points, surface.regular_faces, ids, maxh=0.2)[1]
     assert len(finer) > 2 * len(tets)
+    graded = slicer.tetrahedralize(surface.points, surface.regular_faces, ids, maxh=2.0, grading=0.1)[1]
+    steep = slicer.tetrahedralize(surface.points, surface.regular_faces, ids, maxh=2.0, grading=1.0)[1]
+    plain = slicer.tetrahedralize(surface.points, surface.regular_faces, ids, maxh=2.0, optimizationSteps=0)[1]
+    assert len(graded) > len(steep) > len(plain)
 
 
 def test_slicer_surface_that_faces_inwards_is_filled() -> None:
