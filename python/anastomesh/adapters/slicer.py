@@ -39,7 +39,6 @@ class VolumeMeshing(Protocol):
 
     edgeLength: float
     netgenGrading: float
-    netgenOptimizationSteps: int
 
 
 def isAvailable() -> bool:
@@ -64,10 +63,10 @@ def tetrahedralize(
     """Fills a closed surface; returns points, tetrahedra, boundary triangles and the face id of each.
 
     Points and triangles of the surface come first and stay as they are. ``maxh`` is the maximum edge length inside, and
-    ``grading`` the growth of edge lengths per length. With ``optimizationSteps=0``, no points are added that improve tetrahedra.
-    ``sizingPoints`` and ``sizingLengths`` are ignored: edge lengths grow from those of the triangles.
+    ``grading`` the growth of edge lengths per length. Other arguments are ignored: tetrahedra are always improved, and edge
+    lengths grow from those of the triangles.
     """
-    mesh = _fill(vertices, faces, faceIds, maxh, grading, optimizationSteps)
+    mesh = _fill(vertices, faces, faceIds, maxh, grading)
     ids = np.zeros(len(mesh.triangles), np.int32) if mesh.markers is None else mesh.markers
     return mesh.points, mesh.tets, mesh.triangles, ids
 
@@ -81,16 +80,13 @@ def runAnastomesh(
     """
     points, triangles = triangles_of(surfaceMesh)
     ids = cell_array(surfaceMesh, cellEntityIdsArrayName)
-    size, grading, steps = volumeMeshing.edgeLength, volumeMeshing.netgenGrading, volumeMeshing.netgenOptimizationSteps
-    mesh = _fill(points, triangles, ids, size, grading, steps)
+    mesh = _fill(points, triangles, ids, volumeMeshing.edgeLength, volumeMeshing.netgenGrading)
     return grid_of(mesh, cellEntityIdsArrayName, triangles=outputSurfaceElements)
 
 
-def _fill(points: Rows, triangles: Rows, ids: Column | None, size: float, grading: float, steps: int) -> Mesh:
+def _fill(points: Rows, triangles: Rows, ids: Column | None, size: float, grading: float) -> Mesh:
     try:
-        # A surface that faces inwards is turned.
-        return _tetrahedralize(
-            points, triangles, markers=ids, plc=True, size=size, growth=max(_LEAST_GROWTH, 1 + grading), refine=steps > 0
-        )
+        # As a complex, a surface that faces inwards is turned.
+        return _tetrahedralize(points, triangles, markers=ids, plc=True, size=size, growth=max(_LEAST_GROWTH, 1 + grading))
     except Error as error:
         raise TetrahedralizationError(str(error)) from error

@@ -53,7 +53,7 @@ class vmtkAnastomesh(original.vmtkTetGen):  # type: ignore[misc]
                 triangles,
                 markers=cell_array(surface, self.CellEntityIdsArrayName),
                 plc=bool(self.PLC),
-                refine=bool(self.Quality),
+                refine=bool(self.Quality or self.FixedVolume or self.UseSizingFunction),
                 max_radius_edge=self.MinRatio if self.Quality else None,
                 min_dihedral=self.MinDihedral if self.Quality else None,
                 max_volume=self.MaxVolume if self.FixedVolume else None,
