@@ -2,7 +2,7 @@
 """The adapters of the Python package beside the back ends of their packages, as tables in Markdown.
 
     python benches/adapters.py SURFACE.off...            all tables
-    python benches/adapters.py --timeout 30 SURFACE.off...
+    python benches/adapters.py --timeout 60 SURFACE.off...
 
 Needs Python 3.12 and `pip install anastomesh pyvista tetgen meshio vmtk svv pytetwild netgen-mesher`; `ANASTOMESH_BINARY` is the
 path of another program. Each fill runs in its own process, one time, from arrays in memory to arrays in memory; imports are not
@@ -124,6 +124,8 @@ def one_fill(name, path):
     inside = np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)).sum() / 6
     corners = points[triangles]
     enclosed = abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()) / 6
+    if inside < 0.99 * enclosed:
+        raise RuntimeError(f"{inside / enclosed:.0%} of the volume filled")
     print(json.dumps({"seconds": seconds, "tets": len(tets), "kept": bool(is_kept), "volume": inside / enclosed}))
 
 
@@ -189,9 +191,12 @@ def in_process(kind, name, what, limit):
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if done.returncode == 0 and lines:
         return json.loads(lines[-1])
-    said = [line for line in done.stderr.splitlines() if line.strip()] or [f"exit code {done.returncode}"]
-    print(f"{name}, {what}: {said[-1]}", file=sys.stderr)
-    return f"failed: {said[-1].split(':')[0].split('.')[-1]}" if done.returncode > 0 else f"failed: signal {-done.returncode}"
+    if done.returncode < 0:
+        return f"failed: signal {-done.returncode}"
+    said = done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"exit code {done.returncode}"
+    print(f"{name}, {what}: {said}", file=sys.stderr)
+    exception, _, text = said.partition(": ")
+    return f"failed: {text if exception == 'RuntimeError' else exception}"
 
 
 def cell(made):
@@ -237,7 +242,7 @@ def formats(path, limit):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--timeout", type=int, default=30, help="seconds for each run")
+    parser.add_argument("--timeout", type=int, default=20, help="seconds for each run")
     parser.add_argument("--one", choices=["fill", "tree", "format"], help=argparse.SUPPRESS)
     parser.add_argument("paths", nargs="+")
     arguments = parser.parse_args()
@@ -248,7 +253,7 @@ def main():
     fills(KEEP, paths, arguments.timeout)
     fills(SIZE, paths, arguments.timeout)
     trees(arguments.timeout)
-    formats(paths[0], arguments.timeout)
+    formats(max(paths, key=os.path.getsize), arguments.timeout)
 
 
 if __name__ == "__main__":
