@@ -237,7 +237,7 @@ def formats(path, limit):
             print(f"| `{extension}` | {made} | | | |", flush=True)
             continue
         same, names = ("yes" if made[key] else "no" for key in ("same", "names"))
-        print(f"| `{extension}` | {made['write']:.2f} s | {made['read']:.2f} s | {same} | {names} |", flush=True)
+        print(f"| `{extension}` | {1e3 * made['write']:.0f} ms | {1e3 * made['read']:.0f} ms | {same} | {names} |", flush=True)
 
 
 def main():
