@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Prefixes of files with values at points, tetrahedra and triangles.
 _VALUES = {"point": "point_", "tet": "tet_", "triangle": "triangle_"}
+#: Names that meshio gives to cells, by their number of points.
+_MESHIO = {3: "triangle", 4: "tetra", 6: "triangle6", 10: "tetra10"}
 _PARTS = ("points", "tets", "tet_blocks", "triangles", "triangle_patches", "triangle_blocks")
 
 
@@ -102,7 +104,8 @@ class Mesh:
         ``field_data``."""
         import meshio
 
-        cells = [("tetra", self.tets), ("triangle", self.triangles)]
+        # Files of second order have ten and six columns.
+        cells = [(_MESHIO[cell.shape[1]], cell) for cell in (self.tets, self.triangles)]
         return meshio.Mesh(
             self.points,
             [(kind, cell) for kind, cell in cells if len(cell)],
@@ -158,9 +161,9 @@ class Mesh:
             else _arrays.labels("markers", self.markers, of_triangles),
             triangle_blocks=self._blocks if len(triangles) else None,
         )
-        if self._notes:
+        if self._notes or self.patches:
             with open(os.path.join(path, "mesh.json"), "w", encoding="utf-8") as file:
-                json.dump(self._notes, file)
+                json.dump({**self._notes, "patches": [_said(patch) for patch in self.patches]}, file)
         return path
 
     @classmethod
@@ -199,6 +202,11 @@ def _patch(said: Mapping[str, Any]) -> Patch:
     if cap is None:
         return Patch(said["id"], said["name"])
     return Patch(said["id"], said["name"], cap["node"], tuple(cap["center"]), tuple(cap["normal"]), cap["radius"])
+
+
+def _said(patch: Patch) -> dict[str, Any]:
+    cap = {"node": patch.node or 0, "center": patch.center, "normal": patch.normal, "radius": patch.radius}
+    return {"id": patch.id, "name": patch.name, "cap": None if patch.center is None else cap}
 
 
 def _terminals(folder: str) -> list[dict[str, Any]]:

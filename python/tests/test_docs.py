@@ -8,14 +8,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from anastomesh._binary import binary
 
 ROOT = Path(__file__).parents[2]
 
 
-def blocks() -> list[str]:
-    """Blocks of Python in docs/python.md, in their order; each continues the one before it."""
-    return re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/python.md").read_text(encoding="utf-8"), re.M | re.S)
+def blocks(page: str = "docs/python.md") -> list[str]:
+    """Blocks of Python in a page, in their order; each continues the one before it."""
+    return re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
 
 
 def test_documentation(tmp_path: Path) -> None:
@@ -28,6 +29,16 @@ def test_documentation(tmp_path: Path) -> None:
         pattern = re.escape(line).replace(re.escape("..."), ".*")
         assert re.search(f"^{pattern}$", done.stdout, re.M), line
     assert {"vessels.vtu", "vessels.png", "vessels.html"} <= {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize("page", ["meshio", "pyvista", "simvascular", "slicer", "svv", "vmtk"])
+def test_pages_of_adapters(page: str, tmp_path: Path) -> None:
+    if page in ("svv", "vmtk"):
+        pytest.importorskip(page, reason=f"{page} is not installed")
+    code = "\n".join(blocks(f"docs/adapters/{page}.md"))
+    assert "import" in code
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_tutorial(tmp_path: Path) -> None:
