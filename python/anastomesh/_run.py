@@ -6,6 +6,7 @@ import json
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -113,7 +114,9 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     """Stops the program as Ctrl-C does, so that it removes partial files."""
     if process.stderr is not None:
         process.stderr.close()
-    for how in (signal.SIGINT, signal.SIGINT, signal.SIGKILL):
+    # Windows has no signal that the program could handle.
+    signals = (signal.SIGINT, signal.SIGINT, signal.SIGKILL) if sys.platform != "win32" else (signal.SIGTERM,)
+    for how in signals:
         process.send_signal(how)
         try:
             process.wait(_PATIENCE)
