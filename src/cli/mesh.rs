@@ -401,8 +401,9 @@ impl Args {
             None => (written, &made.check),
         };
         notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.list().to_vec());
-        let second =
-            bars.during(Stage::Check, || self.order.balanced(written, check, &notes)).map_err(|e| failed(&e))?;
+        let second = bars
+            .during(Stage::Check, || self.order.balanced(written, &made.network, check, &notes))
+            .map_err(|e| failed(&e))?;
         let options = options.second_order(second.as_ref().map(|second| &second.midpoints));
         let (written, check): (&dyn MeshSource, _) =
             second.as_ref().map_or((written, check), |second| (&second.corners, &second.check));

@@ -3,19 +3,14 @@
 //! A mesh whose flat faces enclose the right volume has its vertices outside of a convex surface. A curved surface through these
 //! vertices would enclose too much.
 
-use super::edges::{Edges, FACE_EDGES};
+use super::edges::Edges;
+use super::extend::{Carried, Planes, Vertices, extend};
 use super::midpoints::SecondOrder;
-use super::surface;
+use super::surface::{self, Flat};
 use crate::VolumeMesh;
 use crate::geometry::predicates::orient3d;
-use crate::geometry::{Point3, Vec3, unit_normal};
+use crate::geometry::{Point3, Vec3};
 use rayon::prelude::*;
-
-/// Height of a curved face over the flat one, relative to its size, below which it is flat: rounding errors.
-const FLAT: f64 = 1e-9;
-
-/// Least length of the part of a plane's normal that other planes do not contain. Below, both planes are the same.
-const SAME_PLANE: f64 = 1e-3;
 
 /// Least length of the mean of unit normals around a vertex that moves.
 const LEAST_NORMAL: f64 = 0.5;
@@ -35,10 +30,12 @@ impl SecondOrder {
     ///
     /// A curved face is higher than the flat one by a third of the sum of the offsets of its midpoints, on average. A vertex moves inwards by
     /// the mean of this height over its faces, weighted by area, along their mean normal. Around a tube of 12 points, the curved
-    /// volume then differs by 0.02 %.
-    pub fn balanced_points(volume: &VolumeMesh) -> Vec<Point3> {
+    /// volume then differs by 0.02 %. Vertices near the surface, as those of thin layers, move with it.
+    ///
+    /// `rest` is what is then left from a position to the right one: zero if it is not known.
+    pub fn balanced_points(volume: &VolumeMesh, rest: &(impl Fn(&Point3) -> Vec3 + Sync)) -> Vec<Point3> {
         let points = &volume.mesh.points;
-        let mut shifts = shifts(volume);
+        let mut shifts = shifts(volume, rest);
         let mut halvings = vec![0_u8; points.len()];
         for _ in 0..ROUNDS {
             let moved: Vec<Point3> = points.par_iter().zip(&shifts).map(|(p, shift)| p + shift).collect();
@@ -79,51 +76,53 @@ struct Around {
     area: f64,
     height: f64,
     normal: Vec3,
-    /// Orthonormal directions in which the vertex stays: normals of flat faces.
-    fixed: Vec<Vec3>,
+    /// Number of these faces.
+    faces: u32,
+    /// Planes of the flat faces.
+    planes: Planes,
 }
 
 impl Around {
-    /// Adds the normal of a flat face.
-    fn fix(&mut self, normal: Vec3) {
-        let new = self.fixed.iter().fold(normal, |rest, fixed| rest - fixed * fixed.dot(&rest));
-        self.fixed.extend(new.try_normalize(SAME_PLANE));
+    /// Edge of an equilateral triangle with the mean area of the curved faces.
+    fn edge(&self) -> f64 {
+        (4.0 / 3.0_f64.sqrt() * self.area / f64::from(self.faces)).sqrt()
     }
 
-    /// Displacement of the vertex.
+    /// Displacement of a vertex of curved faces.
     fn shift(&self) -> Vec3 {
         let mean = self.normal / self.area;
         let length = mean.norm();
-        // Not a number for a vertex without curved faces.
-        if length.is_nan() || length < LEAST_NORMAL {
-            return Vec3::zeros();
-        }
-        let shift = mean * (-self.height / self.area / length);
-        self.fixed.iter().fold(shift, |rest, fixed| rest - fixed * fixed.dot(&rest))
+        if length < LEAST_NORMAL { Vec3::zeros() } else { mean * (-self.height / self.area / length) }
     }
 }
 
 /// Displacement of each vertex.
-fn shifts(volume: &VolumeMesh) -> Vec<Vec3> {
+fn shifts(volume: &VolumeMesh, rest: &(impl Fn(&Point3) -> Vec3 + Sync)) -> Vec<Vec3> {
     let points = &volume.mesh.points;
     let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, points.len());
     let offsets = surface::offsets(volume, &edges);
-    let offset = |a: u32, b: u32| edges.find(a, b).map_or(Vec3::zeros(), |edge| offsets[edge as usize]);
     let mut around = vec![Around::default(); points.len()];
-    for face in &volume.boundary {
-        let [a, b, c] = face.map(|v| points[v as usize]);
-        let (normal, area) = (unit_normal(a.coords, b.coords, c.coords), 0.5 * (b - a).cross(&(c - a)).norm());
-        let height = FACE_EDGES.map(|[i, j]| offset(face[i], face[j]).dot(&normal)).iter().sum::<f64>() / 3.0;
+    for (face, Flat { normal, area, height }) in volume.boundary.iter().zip(Flat::faces(volume, &edges, &offsets)) {
         for v in face {
             let around = &mut around[*v as usize];
-            if height.abs() > FLAT * area.sqrt() {
+            if height != 0.0 {
                 around.area += area;
                 around.height += area * height;
                 around.normal += normal * area;
+                around.faces += 1;
             } else {
-                around.fix(normal);
+                around.planes.add(normal);
             }
         }
     }
-    around.par_iter().map(Around::shift).collect()
+    let on_curved = |(own, point): (&Around, &Point3)| {
+        (own.area > 0.0).then(|| {
+            let shift = own.shift();
+            let shift = own.planes.within(shift + rest(&(point + shift)));
+            Carried::on_surface(shift, own.edge())
+        })
+    };
+    let known = around.par_iter().zip(points).map(on_curved).collect();
+    let allowed = |v: u32, shift| around[v as usize].planes.within(shift);
+    extend(&Vertices::new(points, &edges, allowed), known)
 }

@@ -1,12 +1,14 @@
 //! Midpoints on curved surfaces, pulled back where an element would be distorted.
 
-use super::edges::Edges;
+use super::edges::{Edges, FACE_EDGES};
+use super::extend::{Carried, Middles, Planes, extend};
 use super::jacobian::{Sign, jacobian_above};
 use super::midpoints::SecondOrder;
-use super::surface;
+use super::surface::{self, Flat};
 use crate::VolumeMesh;
 use crate::geometry::{Point3, Vec3};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 /// Least Jacobian determinant of a curved element, relative to that of the straight one with the same corners. Elements below it are
 /// pulled back. A positive determinant suffices for solvers; the margin keeps their matrices regular.
@@ -36,25 +38,47 @@ pub struct Curving {
 
 impl SecondOrder {
     /// Midpoints of a mesh. Those of labelled faces lie on a smooth surface through the vertices of the faces; caps and other flat
-    /// parts stay flat. Where an element would be distorted, the midpoints of its edges are pulled back. The result does not
+    /// parts stay flat. Edges near a curved face follow it. Where an element would be distorted, the midpoints of its edges are pulled back. The result does not
     /// depend on the number of threads.
     ///
     /// All tetrahedra must be positive. Each face must be a face of a tetrahedron.
     pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {
         let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, volume.mesh.points.len());
         let offsets = surface::offsets(volume, &edges);
-        curve(volume, edges, offsets)
+        let second = Self::straight_with(&volume.mesh.points, edges);
+        let offsets = inner_offsets(volume, &second, offsets);
+        curve(volume, second, offsets)
     }
 }
 
+/// Offsets of all edges from those of the edges of faces. Edges in flat faces stay in their planes.
+fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: Vec<Vec3>) -> Vec<Vec3> {
+    let points = &volume.mesh.points;
+    let mut known = vec![None; offsets.len()];
+    let mut planes: FxHashMap<u32, Planes> = FxHashMap::default();
+    for (face, flat) in volume.boundary.iter().zip(Flat::faces(volume, &second.edges, &offsets)) {
+        for [i, j] in FACE_EDGES {
+            let edge = second.listed(face[i], face[j]);
+            let offset = offsets[edge as usize];
+            if flat.height != 0.0 || offset != Vec3::zeros() {
+                let length = (points[face[j] as usize] - points[face[i] as usize]).norm();
+                known[edge as usize] = Some(Carried::on_surface(offset, length));
+            } else {
+                planes.entry(edge).or_default().add(flat.normal);
+            }
+        }
+    }
+    extend(&Middles::new(second, (points, &volume.mesh.tets), planes), known)
+}
+
 /// Places the midpoints of edges at the given offsets from the middles, as far as the elements permit.
-fn curve(volume: &VolumeMesh, edges: Edges, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
+fn curve(volume: &VolumeMesh, second: SecondOrder, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
     let mut state = State {
         volume,
         touched: offsets.iter().map(|offset| *offset != Vec3::zeros()).collect(),
         halvings: vec![0; offsets.len()],
         least: vec![1.0; volume.mesh.tets.len()],
-        second: SecondOrder::straight_with(&volume.mesh.points, edges),
+        second,
         offsets,
     };
     state.place();

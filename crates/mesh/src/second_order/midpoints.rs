@@ -76,7 +76,7 @@ impl SecondOrder {
         TET_EDGES.map(|[i, j]| self.listed(tet[i], tet[j]))
     }
 
-    fn listed(&self, a: u32, b: u32) -> u32 {
+    pub(super) fn listed(&self, a: u32, b: u32) -> u32 {
         self.edges.find(a, b).expect("the edges of all cells of the mesh are listed")
     }
 

@@ -3,8 +3,9 @@
 //! A second-order mesh consists of a [`VolumeMesh`](crate::VolumeMesh) and a [`SecondOrder`]. Its elements have ten nodes, its
 //! boundary faces six: the corners, then the midpoints in the order of [`TET_EDGES`] and [`FACE_EDGES`], which is VTK's order.
 //!
-//! [`SecondOrder::balanced_points`] moves vertices whose flat faces enclose the right volume to the surface. [`SecondOrder::curved`] places the midpoints of labelled faces on a smooth surface and keeps all other edges straight. Each
-//! element is then proved to have a positive Jacobian determinant ([`jacobian_above`]), which makes its map invertible.
+//! [`SecondOrder::balanced_points`] moves vertices whose flat faces enclose the right volume to the surface.
+//! [`SecondOrder::curved`] places the midpoints of labelled faces on a smooth surface. Edges near the surface follow it, and
+//! all others are straight. Each element is then proved to have a positive Jacobian determinant ([`jacobian_above`]), which makes its map invertible.
 //! [`check_jacobians`] proves the same for any second-order mesh. Intersections of curved faces that share no vertex are not
 //! excluded.
 
@@ -13,6 +14,7 @@ mod balance;
 mod check;
 mod curve;
 mod edges;
+mod extend;
 mod jacobian;
 mod midpoints;
 mod read;

@@ -32,6 +32,31 @@ pub(super) fn offsets(volume: &VolumeMesh, edges: &Edges) -> Vec<Vec3> {
     offsets
 }
 
+/// Face of the boundary under its curved face.
+pub(super) struct Flat {
+    pub normal: Vec3,
+    pub area: f64,
+    /// Mean height of the curved face above this one. Zero in caps and other planes, also with curved edges in the plane.
+    pub height: f64,
+}
+
+/// Height of a curved face over the flat one, relative to its size, below which it is flat: rounding errors.
+const LEAST_HEIGHT: f64 = 1e-9;
+
+impl Flat {
+    /// Faces of the boundary of a mesh, for these offsets of its edges.
+    pub fn faces(volume: &VolumeMesh, edges: &Edges, offsets: &[Vec3]) -> Vec<Self> {
+        let offset = |a: u32, b: u32| edges.find(a, b).map_or(Vec3::zeros(), |edge| offsets[edge as usize]);
+        let of_face = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|v| volume.mesh.points[v as usize]);
+            let (normal, area) = (unit_normal(a.coords, b.coords, c.coords), 0.5 * (b - a).cross(&(c - a)).norm());
+            let height = FACE_EDGES.map(|[i, j]| offset(face[i], face[j]).dot(&normal)).iter().sum::<f64>() / 3.0;
+            Self { normal, area, height: if height.abs() > LEAST_HEIGHT * area.sqrt() { height } else { 0.0 } }
+        };
+        volume.boundary.par_iter().map(of_face).collect()
+    }
+}
+
 /// Labelled faces with the normals of the surfaces at their corners.
 struct Surface<'a> {
     points: &'a [Point3],
