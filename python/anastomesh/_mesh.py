@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _arrays, _files
 from ._arrays import Array, Floats, Ints
+from ._foreign import polydata_of
 from .options import ConvertOptions, StrPath
 
 if TYPE_CHECKING:
@@ -89,9 +90,7 @@ class Mesh:
 
     def boundary_to_pyvista(self) -> pyvista.PolyData:
         """The boundary as a ``pyvista.PolyData`` with all points, the cell arrays ``patch`` and ``block``, and ``values``."""
-        import pyvista
-
-        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
+        surface = polydata_of(self.points, self.triangles)
         self._add_data(surface, {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()})
         return surface
 
