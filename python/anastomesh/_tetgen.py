@@ -197,7 +197,7 @@ class TetGen:
 def _refuse(others: Mapping[str, Any], order: int) -> None:
     """Raises an exception for keywords that are unknown or ask for another result."""
     if order != 1:
-        raise NotImplementedError(f"order={order} is not supported: tetrahedra have four corners: use order=1")
+        raise NotImplementedError(f"order={order} is not supported: use order=1, or anastomesh.tetrahedralize(order=2)")
     for name, value in others.items():
         if name in _REFUSED:
             usual, instead = _REFUSED[name]
