@@ -60,7 +60,7 @@ def convert(source: Drawable, target: StrPath, **options: Unpack[ConvertOptions]
     .glb, .3mf, .vtp; networks: .vtp, .npyd and, for trees, .swc.
     """
     with work_folder() as folder:
-        convert_file(_written(source, folder), target, options, folder)
+        convert_file(_written(source, folder), target, options, folder, stacklevel=3)
 
 
 @_RENDER.documents

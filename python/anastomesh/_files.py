@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Protocol, TypeVar
 
@@ -21,9 +22,12 @@ class Writable(Protocol):
     def _write(self, folder: str) -> str: ...
 
 
-def convert_file(source: str, target: StrPath, options: Mapping[str, object], folder: str) -> None:
-    """Converts a file; messages do not name ``folder``."""
-    CONVERT.run([source, f"--output={os.fspath(target)}"], options, folder=folder).ensure_success()
+def convert_file(source: str, target: StrPath, options: Mapping[str, object], folder: str, stacklevel: int = 4) -> None:
+    """Converts a file; messages do not name ``folder``. Warnings name the caller at ``stacklevel``."""
+    done = CONVERT.run([source, f"--output={os.fspath(target)}"], options, folder=folder).ensure_success()
+    for line in done.messages:
+        if line.startswith("warning: "):
+            warnings.warn(line.removeprefix("warning: "), stacklevel=stacklevel)
 
 
 def save(thing: Writable, path: StrPath, options: Mapping[str, object]) -> None:

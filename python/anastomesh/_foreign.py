@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeGuard, Union
 
 import numpy as np
 
+from ._arrays import Array
+
 if TYPE_CHECKING:
     import pyvista
 
@@ -64,3 +66,12 @@ def triangles_of(surface: Any) -> tuple[Any, Any]:
     if not getattr(surface, "is_all_triangles", True):
         raise ValueError("the PolyData has faces that are not triangles: call its triangulate() first")
     return np.asarray(surface.points), np.asarray(surface.faces).reshape(-1, 4)[:, 1:]
+
+
+def polydata_of(points: Array, triangles: Array) -> pyvista.PolyData:
+    """A ``pyvista.PolyData`` of triangles."""
+    import pyvista
+
+    # The annotations of pyvista reject float64 points with numpy 1; arrays of any dtype pass.
+    surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(points, triangles.astype(int))
+    return surface

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _arrays, _files
 from ._arrays import Array, Floats, Ints
+from ._foreign import polydata_of
 from .options import ConvertOptions, StrPath
 
 if TYPE_CHECKING:
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 #: Prefixes of files with values at points, tetrahedra and triangles.
 _VALUES = {"point": "point_", "tet": "tet_", "triangle": "triangle_"}
+#: Numbers of points of tetrahedra and triangles, by their order.
+_COLUMNS = {1: (4, 3), 2: (10, 6)}
+#: Triangles between the corners 0, 1, 2 and the midpoints 3, 4, 5 of a triangle of second order.
+_QUARTERS = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
 #: Names that meshio gives to cells, by their number of points.
 _MESHIO = {3: "triangle", 4: "tetra", 6: "triangle6", 10: "tetra10"}
 _PARTS = ("points", "tets", "tet_blocks", "triangles", "triangle_patches", "triangle_blocks")
@@ -45,11 +50,14 @@ class Mesh:
     """A mesh: tetrahedron ``i`` has the corners ``points[tets[i]]`` and a positive volume.
 
     A surface that was filled keeps the order of its points and triangles; points that were added follow.
+
+    Elements of second order have ten and six points: corners, then the midpoints of the edges 01, 12, 02, 03, 13, 23.
     """
 
     points: Floats
+    #: Tetrahedra (m, 4), or (m, 10) with ``order=2``.
     tets: Ints
-    #: Triangles of the boundary (k, 3), counter-clockwise from outside.
+    #: Triangles of the boundary (k, 3) or (k, 6), counter-clockwise from outside.
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int32))
     #: Patch of each triangle (k,), or None.
     markers: Ints | None = None
@@ -69,7 +77,13 @@ class Mesh:
 
     def __repr__(self) -> str:
         cells = f"{len(self.tets):,} tetrahedra, {len(self.triangles):,} triangles"
-        return f"Mesh({len(self.points):,} points, {cells}, {len(self.patches):,} patches)"
+        order = ", order 2" if self.order == 2 else ""
+        return f"Mesh({len(self.points):,} points, {cells}, {len(self.patches):,} patches{order})"
+
+    @property
+    def order(self) -> int:
+        """Order of the elements: 2 if ``tets`` has ten columns, else 1."""
+        return 2 if np.shape(self.tets)[1:] == (10,) else 1
 
     def patch(self, name: str) -> Ints:
         """Triangles of the patch with a name."""
@@ -83,16 +97,24 @@ class Mesh:
         """The tetrahedra as a ``pyvista.UnstructuredGrid``, with the cell array ``block`` and ``values``."""
         import pyvista
 
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tets}, self.points)
+        kind = pyvista.CellType.QUADRATIC_TETRA if self.order == 2 else pyvista.CellType.TETRA
+        grid = pyvista.UnstructuredGrid({kind: self.tets}, self.points)
         self._add_data(grid, {name: of_tets for name, (of_tets, _) in self._cell_data().items() if name != "patch"})
         return grid
 
     def boundary_to_pyvista(self) -> pyvista.PolyData:
-        """The boundary as a ``pyvista.PolyData`` with all points, the cell arrays ``patch`` and ``block``, and ``values``."""
-        import pyvista
+        """The boundary as a ``pyvista.PolyData`` with all points, the cell arrays ``patch`` and ``block``, and ``values``.
 
-        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
-        self._add_data(surface, {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()})
+        A triangle of second order becomes four plane triangles between its corners and midpoints.
+        """
+        of_cells = {name: of_triangles for name, (_, of_triangles) in self._cell_data().items()}
+        triangles = self.triangles
+        if self.order == 2:
+            # PolyData has no curved triangles.
+            triangles = triangles.reshape(-1, 6)[:, _QUARTERS].reshape(-1, 3)
+            of_cells = {name: np.repeat(values, len(_QUARTERS), axis=0) for name, values in of_cells.items()}
+        surface = polydata_of(self.points, triangles)
+        self._add_data(surface, of_cells)
         return surface
 
     def _add_data(self, data_set: pyvista.DataSet, of_cells: dict[str, Array]) -> None:
@@ -100,11 +122,10 @@ class Mesh:
         data_set.point_data.update(self._values("point"))
 
     def to_meshio(self) -> Any:
-        """A ``meshio.Mesh``: cells ``tetra`` and ``triangle``, cell data ``patch`` and ``block``, the names of patches in
-        ``field_data``."""
+        """A ``meshio.Mesh``: cells ``tetra`` and ``triangle``, or ``tetra10`` and ``triangle6``, cell data ``patch`` and
+        ``block``, the names of patches in ``field_data``."""
         import meshio
 
-        # Files of second order have ten and six columns.
         cells = [(_MESHIO[cell.shape[1]], cell) for cell in (self.tets, self.triangles)]
         return meshio.Mesh(
             self.points,
@@ -119,7 +140,10 @@ class Mesh:
 
     def save(self, path: StrPath, **options: Unpack[ConvertOptions]) -> None:
         """Writes the mesh (.vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele, .npyd) or its boundary (.stl, .ply, .obj, .off,
-        .glb, .3mf, .vtp); the keyword arguments are those of ``convert``."""
+        .glb, .3mf, .vtp); the keyword arguments are those of ``convert``.
+
+        Only .vtu, .msh, .msh2 and .npyd keep the midpoints of second order. Other formats leave them out with a warning.
+        """
         _files.save(self, path, options)
 
     @classmethod
@@ -146,8 +170,11 @@ class Mesh:
         path = os.path.join(folder, "mesh.npyd")
         os.mkdir(path)
         points = _arrays.floats("points", self.points, 3)
-        tets = _arrays.indices("tets", self.tets, 4, "points", len(points))
-        triangles = _arrays.indices("triangles", self.triangles, 3, "points", len(points))
+        of_tet, of_triangle = _COLUMNS[self.order]
+        tets = _arrays.indices("tets", self.tets, of_tet, "points", len(points))
+        # An empty array has three columns by default.
+        given = self.triangles if len(self.triangles) else np.zeros((0, of_triangle), np.int32)
+        triangles = _arrays.indices("triangles", given, of_triangle, "points", len(points))
         of_tets, of_triangles = ("tets", len(tets)), ("triangles", len(triangles))
         _arrays.write(
             path,

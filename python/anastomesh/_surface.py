@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _files, _ply
 from ._arrays import Column, Rows
-from ._foreign import ForeignSurface, triangles_of
+from ._foreign import ForeignSurface, polydata_of, triangles_of
 from .options import ConvertOptions, StrPath
 
 if TYPE_CHECKING:
@@ -38,9 +38,7 @@ class Surface:
 
     def to_pyvista(self) -> pyvista.PolyData:
         """The surface as a ``pyvista.PolyData``, with the cell array ``patch`` if there are markers."""
-        import pyvista
-
-        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.points, self.triangles.astype(int))
+        surface = polydata_of(self.points, self.triangles)
         if self.markers is not None:
             surface.cell_data["patch"] = self.markers
         return surface

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arrays import Array, Column, Floats, Ints, Rows
-from ._foreign import ForeignSurface, is_surface, triangles_of
+from ._foreign import ForeignSurface, is_surface, polydata_of, triangles_of
 from ._mesh import Mesh
 from ._progress import ProgressLike
 from ._surface_verbs import tetrahedralize as _tetrahedralize
@@ -183,10 +183,7 @@ class TetGen:
     @property
     def mesh(self) -> pyvista.PolyData:
         """The surface as a ``pyvista.PolyData``."""
-        import pyvista
-
-        surface: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.v, self.f.astype(int))
-        return surface
+        return polydata_of(self.v, self.f)
 
     def plot(self, **options: Any) -> Any:
         """Plots the mesh with pyvista, which gets the keyword arguments."""
@@ -200,7 +197,7 @@ class TetGen:
 def _refuse(others: Mapping[str, Any], order: int) -> None:
     """Raises an exception for keywords that are unknown or ask for another result."""
     if order != 1:
-        raise NotImplementedError(f"order={order} is not supported: tetrahedra have four corners: use order=1")
+        raise NotImplementedError(f"order={order} is not supported: use order=1, or anastomesh.tetrahedralize(order=2)")
     for name, value in others.items():
         if name in _REFUSED:
             usual, instead = _REFUSED[name]

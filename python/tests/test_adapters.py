@@ -86,13 +86,20 @@ def test_meshio_writes_surfaces_of_gmsh_files(meshio_formats: ModuleType, cube: 
         hexahedron.write(tmp_path / "cube.npyd")
 
 
-def test_meshio_reads_second_order(meshio_formats: ModuleType, fixtures: Path, tmp_path: Path) -> None:
-    words = ["tetrahedralize", str(fixtures / "torus.off"), f"--output={tmp_path / 'torus.npyd'}", "--order=2"]
-    from anastomesh._run import run
-
-    assert run(words).code == 0
-    read = meshio_formats.read(tmp_path / "torus.npyd")
-    assert read.cells_dict["tetra10"].shape[1] == 10 and read.cells_dict["triangle6"].shape[1] == 6
+def test_meshio_keeps_second_order(meshio_formats: ModuleType, fork: nx.Graph, tmp_path: Path) -> None:
+    mesh = anastomesh.mesh(fork, order=2)
+    assert mesh.markers is not None
+    mesh.to_meshio().write(tmp_path / "fork.npyd")
+    read = meshio_formats.read(tmp_path / "fork.npyd")
+    assert np.array_equal(read.points, mesh.points) and np.array_equal(read.cells_dict["tetra10"], mesh.tets)
+    assert np.array_equal(read.cells_dict["triangle6"], mesh.triangles)
+    assert np.array_equal(read.cell_data_dict["patch"]["triangle6"], mesh.markers)
+    assert {name: id for name, (id, _) in read.field_data.items()} == {patch.name: patch.id for patch in mesh.patches}
+    read.write(tmp_path / "fork.msh2")
+    assert anastomesh.Mesh.load(tmp_path / "fork.msh2").order == 2
+    mixed = meshio_formats.Mesh(mesh.points, [("tetra10", mesh.tets), ("triangle", mesh.triangles[:, :3])])
+    with pytest.raises(ValueError, match="cells of type triangle cannot be written beside tetra10: use line, tetra10, triangle6"):
+        mixed.write(tmp_path / "mixed.npyd")
 
 
 # --- VMTK ---

@@ -62,7 +62,7 @@ def test_what_is_not_there_is_refused(cube: Cube) -> None:
     with pytest.raises(AttributeError, match="no mesh yet"):
         _ = tet.grid
     assert not tet.is_tetrahedralized
-    with pytest.raises(NotImplementedError, match="order=2"):
+    with pytest.raises(NotImplementedError, match="order=2 is not supported: use order=1, or anastomesh.tetrahedralize"):
         tet.tetrahedralize(order=2)
     with pytest.raises(NotImplementedError, match="bgmesh.*background mesh"):
         tet.tetrahedralize(bgmesh=pyvista.UnstructuredGrid())

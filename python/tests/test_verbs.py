@@ -163,7 +163,8 @@ def test_check_surface(cube: Cube) -> None:
 
 def test_surfaces_of_other_packages(cube: Cube) -> None:
     mesh = anastomesh.tetrahedralize(*cube)
-    polydata: Any = pyvista.PolyData.from_regular_faces(cube[0], cube[1].astype(int))
+    points: Any = cube[0]
+    polydata: Any = pyvista.PolyData.from_regular_faces(points, cube[1].astype(int))
     for surface in (trimesh.Trimesh(*cube, process=False), polydata, Surface(*cube)):
         assert equal(anastomesh.tetrahedralize(surface), mesh)
     assert len(anastomesh.TetGen(trimesh.Trimesh(*cube)).tetrahedralize(nobisect=True)[1]) > 4

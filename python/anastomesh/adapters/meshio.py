@@ -20,8 +20,8 @@ from .._mesh import Mesh, Patch
 from .._network import Network
 from .._surface import Surface
 
-#: Cells that are written.
-_KINDS = {"tetra", "triangle", "line"}
+#: Tetrahedra and triangles that are written, by their order.
+_KINDS = {1: ("tetra", "triangle"), 2: ("tetra10", "triangle6")}
 
 #: Names of the cell array with the patch of a triangle: those of this program, Gmsh and Medit.
 _PATCHES = ("patch", "gmsh:physical", "medit:ref")
@@ -56,14 +56,16 @@ def write(path: str, mesh: meshio.Mesh, **_: Any) -> None:
 def from_meshio(mesh: meshio.Mesh) -> Mesh | Surface | Network:
     """A mesh if there are tetrahedra, else a surface if there are triangles, else a network of the lines."""
     cells = mesh.cells_dict
-    others = sorted(set(cells) - _KINDS - {"vertex"})
+    tetra, triangle = _KINDS[2 if "tetra10" in cells else 1]
+    others = sorted(set(cells) - {tetra, triangle, "line", "vertex"})
     if others:
-        raise ValueError(f"cells of type {others[0]} cannot be written: use {', '.join(sorted(_KINDS))}")
-    triangles, markers = cells.get("triangle"), _cell_data(mesh, _PATCHES, "triangle")
-    if "tetra" in cells:
+        beside = " beside tetra10" if "tetra10" in cells else ""
+        raise ValueError(f"cells of type {others[0]} cannot be written{beside}: use line, {tetra}, {triangle}")
+    triangles, markers = cells.get(triangle), _cell_data(mesh, _PATCHES, triangle)
+    if tetra in cells:
         patches = [Patch(int(id), name) for name, (id, dimension) in mesh.field_data.items() if dimension == 2]
         boundary = np.zeros((0, 3), np.int32) if triangles is None else triangles
-        return Mesh(mesh.points, cells["tetra"], boundary, markers, patches=patches)
+        return Mesh(mesh.points, cells[tetra], boundary, markers, patches=patches)
     if triangles is not None:
         return Surface(mesh.points, triangles, markers)
     if "line" not in cells:

@@ -16,6 +16,19 @@ class ConfigOptions(TypedDict, total=False):
     ]
 
 
+class OrderOptions(TypedDict, total=False):
+    """Elements"""
+
+    order: Annotated[
+        int,
+        Option(
+            "Order of the elements: 1, or 2 for ten-node tetrahedra whose midpoints lie on smooth walls and interfaces "
+            "(VTU, MSH and .npyd, in memory)",
+            1,
+        ),
+    ]
+
+
 class ThreadOptions(TypedDict, total=False):
     """General"""
 

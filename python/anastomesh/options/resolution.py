@@ -18,7 +18,7 @@ class ResolutionOptions(TypedDict, total=False):
         float | str | None,
         Option("Factor for edge lengths at forks, from 0.25 to 1; or the name of an array on the network's nodes"),
     ]
-    memory: Annotated[str, Option("Memory limit with its unit, as '500MB'", "2GiB")]
+    memory: Annotated[str | None, Option("Memory limit with its unit, as '500MB'; 2GiB if absent")]
     refine: Annotated[
         int | bool,
         Option("Move overlapping vessels apart before meshing: True, or the maximum number of iterations", False),

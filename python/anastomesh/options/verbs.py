@@ -1,6 +1,6 @@
 """Keyword arguments of each function."""
 
-from .common import ConfigOptions, MemoryOptions, PageOptions, ThreadOptions
+from .common import ConfigOptions, MemoryOptions, OrderOptions, PageOptions, ThreadOptions
 from .files import CapOptions, FileOptions, RegionFileOptions
 from .filling import ComplexOptions, FillingOptions
 from .flow import FlowOptions
@@ -18,6 +18,7 @@ from .run import FidelityOptions, RootOptions, RunOptions, WorkOptions
 
 class MeshOptions(
     ReadingOptions,
+    OrderOptions,
     ResolutionOptions,
     LayerOptions,
     DomainOptions,
@@ -94,6 +95,7 @@ class CheckSurfaceOptions(ComplexOptions, ThreadOptions, ConfigOptions, total=Fa
 
 
 class TetrahedralizeOptions(
+    OrderOptions,
     FillingOptions,
     LayerOptions,
     PartialLayerOptions,
