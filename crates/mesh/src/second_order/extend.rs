@@ -76,27 +76,45 @@ pub(super) trait Net: Sync {
 }
 
 /// Displacements of all nodes; those of nodes with `None` follow from the others.
-pub(super) fn extend(net: &impl Net, mut known: Vec<Option<Carried>>) -> Vec<Vec3> {
-    // Depths are positive, so that their bits have their order. Of equal depths, the first node comes first.
-    let mut queue: BinaryHeap<Reverse<(u64, u32)>> = BinaryHeap::new();
-    let spread = |node: u32, known: &[Option<Carried>], queue: &mut BinaryHeap<_>| {
-        // Nodes of the surface without a displacement spread, too: their neighbours do not move either.
-        let Some(own) = known[node as usize].filter(|own| own.depth < own.reach) else { return };
-        let place = net.place(node);
-        for other in net.neighbours(node).filter(|&other| known[other as usize].is_none()) {
-            queue.push(Reverse(((own.depth + (net.place(other) - place).norm()).to_bits(), other)));
-        }
-    };
-    for node in 0..known.len() as u32 {
-        spread(node, &known, &mut queue);
+pub(super) fn extend(net: &impl Net, known: Vec<Option<Carried>>) -> Vec<Vec3> {
+    let mut front = Front { net, nearest: vec![f64::INFINITY; known.len()], known, queue: BinaryHeap::new() };
+    for node in 0..front.known.len() as u32 {
+        front.spread(node);
     }
-    while let Some(Reverse((_, node))) = queue.pop() {
-        if known[node as usize].is_none() {
-            known[node as usize] = carried(net, node, &known);
-            spread(node, &known, &mut queue);
+    while let Some(Reverse((_, node))) = front.queue.pop() {
+        if front.known[node as usize].is_none() {
+            front.known[node as usize] = carried(net, node, &front.known);
+            front.spread(node);
         }
     }
-    known.par_iter().map(|own| own.map_or(Vec3::zeros(), |own| own.displacement())).collect()
+    front.known.par_iter().map(|own| own.map_or(Vec3::zeros(), |own| own.displacement())).collect()
+}
+
+/// Nodes that are visited, and the next ones.
+struct Front<'a, N> {
+    net: &'a N,
+    known: Vec<Option<Carried>>,
+    /// Least depth of each node in the queue.
+    nearest: Vec<f64>,
+    /// Depths with their nodes. Depths are positive, so that their bits have their order. Of equal depths, the first node comes first.
+    queue: BinaryHeap<Reverse<(u64, u32)>>,
+}
+
+impl<N: Net> Front<'_, N> {
+    /// Adds the neighbours of a visited node, up to its reach. Nodes of the surface without a displacement have neighbours, too, which
+    /// do not move either.
+    fn spread(&mut self, node: u32) {
+        let Some(own) = self.known[node as usize] else { return };
+        let place = self.net.place(node);
+        for other in self.net.neighbours(node) {
+            let depth = own.depth + (self.net.place(other) - place).norm();
+            let nearest = &mut self.nearest[other as usize];
+            if depth < own.reach && depth < *nearest && self.known[other as usize].is_none() {
+                *nearest = depth;
+                self.queue.push(Reverse((depth.to_bits(), other)));
+            }
+        }
+    }
 }
 
 /// Weighted mean of the neighbours of a node that are known.
