@@ -115,14 +115,14 @@ fn shifts(volume: &VolumeMesh, rest: &(impl Fn(&Point3) -> Vec3 + Sync)) -> Vec<
             }
         }
     }
-    let on_curved = |(own, point): (&Around, &Point3)| {
+    let on_curved = |(v, own): (u32, &Around)| {
         (own.area > 0.0).then(|| {
             let shift = own.shift();
-            let shift = own.planes.within(shift + rest(&(point + shift)));
-            Carried::on_surface(shift, own.edge())
+            let shift = own.planes.within(shift + rest(&(points[v as usize] + shift)));
+            (v, Carried::on_surface(shift, own.edge()))
         })
     };
-    let known = around.par_iter().zip(points).map(on_curved).collect();
+    let given: Vec<_> = (0..points.len() as u32).into_par_iter().zip(&around).filter_map(on_curved).collect();
     let allowed = |v: u32, shift| around[v as usize].planes.within(shift);
-    extend(&Vertices::new(points, &edges, allowed), known)
+    extend(&Vertices::new(points, &edges, allowed), points.len(), given.into_iter())
 }

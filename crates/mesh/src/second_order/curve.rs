@@ -54,7 +54,7 @@ impl SecondOrder {
 /// Offsets of all edges from those of the edges of faces. Edges in flat faces stay in their planes.
 fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: Vec<Vec3>) -> Vec<Vec3> {
     let points = &volume.mesh.points;
-    let mut known = vec![None; offsets.len()];
+    let mut given = Vec::new();
     let mut planes: FxHashMap<u32, Planes> = FxHashMap::default();
     for (face, flat) in volume.boundary.iter().zip(Flat::faces(volume, &second.edges, &offsets)) {
         for [i, j] in FACE_EDGES {
@@ -62,13 +62,13 @@ fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: Vec<Vec3>) 
             let offset = offsets[edge as usize];
             if flat.height != 0.0 || offset != Vec3::zeros() {
                 let length = (points[face[j] as usize] - points[face[i] as usize]).norm();
-                known[edge as usize] = Some(Carried::on_surface(offset, length));
+                given.push((edge, Carried::on_surface(offset, length)));
             } else {
                 planes.entry(edge).or_default().add(flat.normal);
             }
         }
     }
-    extend(&Middles::new(second, (points, &volume.mesh.tets), planes), known)
+    extend(&Middles::new(second, (points, &volume.mesh.tets), planes), offsets.len(), given.into_iter())
 }
 
 /// Places the midpoints of edges at the given offsets from the middles, as far as the elements permit.

@@ -6,16 +6,16 @@
 
 use super::edges::Edges;
 use super::midpoints::SecondOrder;
-use crate::adjacency::Incidence;
+use crate::adjacency::{Incidence, NONE};
 use crate::geometry::{Point3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Depth at which displacements end, in edges of the surface. With 1, layers inside a bend keep a fifth more of their curvature than with
-/// 0.5. With 2, displacements of opposite walls meet.
-const REACH: f64 = 1.0;
+/// Depth at which displacements end, in edges of the surface. With 1, the conductance of bent tubes does not change, and curving takes
+/// twice the time.
+const REACH: f64 = 0.5;
 
 /// Displacement of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,25 +75,70 @@ pub(super) trait Net: Sync {
     fn allowed(&self, node: u32, displacement: Vec3) -> Vec3;
 }
 
-/// Displacements of all nodes; those of nodes with `None` follow from the others.
-pub(super) fn extend(net: &impl Net, known: Vec<Option<Carried>>) -> Vec<Vec3> {
-    let mut front = Front { net, nearest: vec![f64::INFINITY; known.len()], known, queue: BinaryHeap::new() };
-    for node in 0..front.known.len() as u32 {
+/// Displacements of all nodes. Those that are not given follow from the others.
+pub(super) fn extend(net: &impl Net, nodes: usize, given: impl Iterator<Item = (u32, Carried)>) -> Vec<Vec3> {
+    let known = Known { index: vec![NONE; nodes], carried: Vec::new() };
+    let mut front = Front { net, nearest: vec![f64::INFINITY; nodes], known, queue: BinaryHeap::new() };
+    given.for_each(|(node, carried)| front.known.set(node, carried));
+    for node in 0..nodes as u32 {
         front.spread(node);
     }
     while let Some(Reverse((_, node))) = front.queue.pop() {
-        if front.known[node as usize].is_none() {
-            front.known[node as usize] = carried(net, node, &front.known);
+        if let (None, Some(carried)) = (front.known.get(node), front.known.mean(net, node)) {
+            front.known.set(node, carried);
             front.spread(node);
         }
     }
-    front.known.par_iter().map(|own| own.map_or(Vec3::zeros(), |own| own.displacement())).collect()
+    let known = front.known;
+    (0..nodes as u32).map(|node| known.get(node).map_or(Vec3::zeros(), Carried::displacement)).collect()
+}
+
+/// Displacements of the nodes that have been visited.
+struct Known {
+    /// Position of each node in the other list, or `NONE`.
+    index: Vec<u32>,
+    carried: Vec<Carried>,
+}
+
+impl Known {
+    fn get(&self, node: u32) -> Option<&Carried> {
+        self.carried.get(self.index[node as usize] as usize)
+    }
+
+    /// Adds a node, or replaces its displacement.
+    fn set(&mut self, node: u32, carried: Carried) {
+        match self.index[node as usize] {
+            NONE => {
+                self.index[node as usize] = self.carried.len() as u32;
+                self.carried.push(carried);
+            }
+            at => self.carried[at as usize] = carried,
+        }
+    }
+
+    /// Weighted mean of the neighbours of a node that are known.
+    fn mean(&self, net: &impl Net, node: u32) -> Option<Carried> {
+        let place = net.place(node);
+        let (mut full, mut reach, mut total, mut depth) = (Vec3::zeros(), 0.0, 0.0, f64::INFINITY);
+        for other in net.neighbours(node) {
+            if let Some(known) = self.get(other) {
+                let distance2 = (net.place(other) - place).norm_squared();
+                let weight = 1.0 / distance2.max(f64::MIN_POSITIVE);
+                full += known.full * weight;
+                reach += known.reach * weight;
+                total += weight;
+                depth = depth.min(known.depth + distance2.sqrt());
+            }
+        }
+        let full = net.allowed(node, full / (total + net.held(node)));
+        (total > 0.0).then(|| Carried { full, reach: reach / total, depth })
+    }
 }
 
 /// Nodes that are visited, and the next ones.
 struct Front<'a, N> {
     net: &'a N,
-    known: Vec<Option<Carried>>,
+    known: Known,
     /// Least depth of each node in the queue.
     nearest: Vec<f64>,
     /// Depths with their nodes. Depths are positive, so that their bits have their order. Of equal depths, the first node comes first.
@@ -104,35 +149,17 @@ impl<N: Net> Front<'_, N> {
     /// Adds the neighbours of a visited node, up to its reach. Nodes of the surface without a displacement have neighbours, too, which
     /// do not move either.
     fn spread(&mut self, node: u32) {
-        let Some(own) = self.known[node as usize] else { return };
+        let Some(own) = self.known.get(node) else { return };
         let place = self.net.place(node);
         for other in self.net.neighbours(node) {
             let depth = own.depth + (self.net.place(other) - place).norm();
             let nearest = &mut self.nearest[other as usize];
-            if depth < own.reach && depth < *nearest && self.known[other as usize].is_none() {
+            if depth < own.reach && depth < *nearest && self.known.get(other).is_none() {
                 *nearest = depth;
                 self.queue.push(Reverse((depth.to_bits(), other)));
             }
         }
     }
-}
-
-/// Weighted mean of the neighbours of a node that are known.
-fn carried(net: &impl Net, node: u32, known: &[Option<Carried>]) -> Option<Carried> {
-    let place = net.place(node);
-    let (mut full, mut reach, mut total, mut depth) = (Vec3::zeros(), 0.0, 0.0, f64::INFINITY);
-    for other in net.neighbours(node) {
-        if let Some(other_known) = known[other as usize] {
-            let distance = (net.place(other) - place).norm();
-            let weight = 1.0 / distance.max(f64::MIN_POSITIVE.sqrt()).powi(2);
-            full += other_known.full * weight;
-            reach += other_known.reach * weight;
-            total += weight;
-            depth = depth.min(other_known.depth + distance);
-        }
-    }
-    let full = net.allowed(node, full / (total + net.held(node)));
-    (total > 0.0).then(|| Carried { full, reach: reach / total, depth })
 }
 
 /// Vertices of a mesh, joined by its edges. Some may move only in certain directions.
