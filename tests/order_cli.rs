@@ -65,7 +65,7 @@ fn a_tube_has_the_volume_of_its_cylinder_in_every_format() {
         let made = mesh(&network, &out, &["--rho", "4", "--order", "2"]);
         assert_code(&made, FINE);
         let said = stderr(&made);
-        assert!(said.contains("midpoints on curved surfaces, none pulled back; scaled Jacobian min 0."), "{said}");
+        assert!(said.contains("midpoints on curved edges, none pulled back; scaled Jacobian min 0."), "{said}");
         let file = read_mesh(&out).expect("a mesh");
         assert_eq!(file.volume.mesh.tets, linear.volume.mesh.tets, "{name}");
         let share = volume(&file) / (PI * 20.0) - 1.0;
@@ -107,7 +107,7 @@ fn a_ball_from_a_surface_is_round() {
     let out = folder.path().join("ball.msh");
     let made = fill(&surface, &out, &["--order", "2"]);
     assert_code(&made, FINE);
-    assert!(stderr(&made).contains("midpoints on curved surfaces"), "{}", stderr(&made));
+    assert!(stderr(&made).contains("midpoints on curved edges"), "{}", stderr(&made));
     let file = read_mesh(&out).expect("a mesh");
     let share = volume(&file) / (4.0 / 3.0 * PI) - 1.0;
     assert!(share.abs() < 2e-3, "{share}");

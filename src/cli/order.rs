@@ -12,7 +12,7 @@ use anastomesh_skeleton::{Skeleton, Tubes};
 use std::io;
 
 /// Bytes of memory per tetrahedron.
-const BYTES_PER_TET: f64 = 240.0;
+const BYTES_PER_TET: f64 = 320.0;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct OrderArgs {

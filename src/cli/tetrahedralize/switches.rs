@@ -163,7 +163,7 @@ impl Switches {
 
     fn take_o(&mut self, cursor: &mut Cursor) -> Result<(), SwitchError> {
         if cursor.rest.starts_with('2') {
-            return Err(unsupported('o', "o2: tetrahedra with ten points", "raise the order in the solver"));
+            return Err(unsupported('o', "o2: tetrahedra with ten points", "use --order 2 with .vtu, .msh or .npyd"));
         }
         self.ignore_number(cursor, "'o/…'", "improvement begins with the worst tetrahedra and has no target angle");
         Ok(())

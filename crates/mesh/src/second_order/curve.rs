@@ -25,9 +25,9 @@ const ROUNDS: usize = 100;
 pub struct Curving {
     /// All midpoints.
     pub midpoints: usize,
-    /// Midpoints off the middles of their corners: on a smooth surface, or pulled back from it.
+    /// Midpoints off the middles of their corners: on a smooth surface or near it, or pulled back.
     pub curved: usize,
-    /// Midpoints pulled back from their surface.
+    /// Midpoints pulled back from their places.
     pub pulled: usize,
     /// Pulled midpoints that are the middles of their corners, and not among `curved`.
     pub straightened: usize,
