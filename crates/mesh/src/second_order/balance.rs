@@ -105,13 +105,13 @@ fn shifts(volume: &VolumeMesh, rest: &(impl Fn(&Point3) -> Vec3 + Sync)) -> Vec<
     for (face, Flat { normal, area, height }) in volume.boundary.iter().zip(Flat::faces(volume, &edges, &offsets)) {
         for v in face {
             let around = &mut around[*v as usize];
-            if height != 0.0 {
+            if height == 0.0 {
+                around.planes.add(normal);
+            } else {
                 around.area += area;
                 around.height += area * height;
                 around.normal += normal * area;
                 around.faces += 1;
-            } else {
-                around.planes.add(normal);
             }
         }
     }

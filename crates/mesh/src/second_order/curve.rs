@@ -46,17 +46,17 @@ impl SecondOrder {
         let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, volume.mesh.points.len());
         let offsets = surface::offsets(volume, &edges);
         let second = Self::straight_with(&volume.mesh.points, edges);
-        let offsets = inner_offsets(volume, &second, offsets);
+        let offsets = inner_offsets(volume, &second, &offsets);
         curve(volume, second, offsets)
     }
 }
 
 /// Offsets of all edges from those of the edges of faces. Edges in flat faces stay in their planes.
-fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: Vec<Vec3>) -> Vec<Vec3> {
+fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: &[Vec3]) -> Vec<Vec3> {
     let points = &volume.mesh.points;
     let mut given = Vec::new();
     let mut planes: FxHashMap<u32, Planes> = FxHashMap::default();
-    for (face, flat) in volume.boundary.iter().zip(Flat::faces(volume, &second.edges, &offsets)) {
+    for (face, flat) in volume.boundary.iter().zip(Flat::faces(volume, &second.edges, offsets)) {
         for [i, j] in FACE_EDGES {
             let edge = second.listed(face[i], face[j]);
             let offset = offsets[edge as usize];
