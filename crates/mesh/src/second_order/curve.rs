@@ -38,8 +38,8 @@ pub struct Curving {
 
 impl SecondOrder {
     /// Midpoints of a mesh. Those of labelled faces lie on a smooth surface through the vertices of the faces; caps and other flat
-    /// parts stay flat. Edges near a curved face follow it. Where an element would be distorted, the midpoints of its edges are pulled back. The result does not
-    /// depend on the number of threads.
+    /// parts stay flat. Edges near a curved face follow it. Where an element would be distorted, the midpoints of its edges are
+    /// pulled back. The result does not depend on the number of threads.
     ///
     /// All tetrahedra must be positive. Each face must be a face of a tetrahedron.
     pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {

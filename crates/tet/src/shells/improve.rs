@@ -104,11 +104,13 @@ impl<'a> Improver<'a> {
         let offset = from - self.surface.points[v];
         let Some(way) = offset.try_normalize(0.0) else { return Vec::new() };
         let nearer = from - way * step;
+        let least = KEEPS * self.directions.steepness(v, &self.directions.ways[v]);
+        let is_steep = |place: &Point3| self.is_steep(v, place, least);
         let side = match self.sides.at(v) {
             Side::Flat(normal) => {
                 let side = way.cross(&normal);
                 let all = [nearer, from + side * step, from - side * step];
-                return all.into_iter().filter(|place| self.is_steep(v, place)).collect();
+                return all.into_iter().filter(is_steep).collect();
             }
             Side::Free | Side::Front(_) => any_normal(&way),
         };
@@ -125,13 +127,12 @@ impl<'a> Improver<'a> {
         std::iter::once(nearer)
             .chain(shifts.iter().map(|s| from + s))
             .chain(shifts.iter().map(|s| nearer + s))
-            .filter(|place| may_be_at(place) && self.is_steep(v, place))
+            .filter(|place| may_be_at(place) && is_steep(place))
             .collect()
     }
 
-    /// True if an outer position leads away from all triangles of its vertex.
-    fn is_steep(&self, v: usize, place: &Point3) -> bool {
-        let least = KEEPS * self.directions.steepness(v, &self.directions.ways[v]);
+    /// True if an outer position leads away from all triangles of its vertex, with at least this steepness.
+    fn is_steep(&self, v: usize, place: &Point3, least: f64) -> bool {
         let way = (place - self.surface.points[v]).try_normalize(0.0);
         way.is_some_and(|way| self.directions.steepness(v, &way) >= least)
     }
