@@ -116,7 +116,7 @@ def solve(source, target):
         raise RuntimeError("a point has no owner, or several")
     x = np.empty((blocks.size, 3))
     x[numbers] = values
-    # The tetrahedra at a point may have no triangle on the wall in its part: all parts ask for the points on the wall.
+    # A part can contain a point of the wall without a triangle of the wall, so that all parts exchange ids.
     held = np.zeros(blocks.size, bool)
     held[blocks.send(wall, wall)[0]] = True
     del numbers, values, points
