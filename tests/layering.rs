@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Source folders of the packages, from the repository's root.
-const PACKAGES: [&str; 9] = [
+const PACKAGES: [&str; 10] = [
     "src",
     "crates/mesh/src",
     "crates/skeleton/src",
@@ -15,6 +15,7 @@ const PACKAGES: [&str; 9] = [
     "crates/tet/src",
     "crates/io/src",
     "crates/verify/src",
+    "crates/trials/src",
 ];
 
 /// Modules of the root package by layer. A module may import from layers with a smaller number, and from itself.

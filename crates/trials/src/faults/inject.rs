@@ -1,0 +1,127 @@
+//! System calls that fail on purpose, by fault injection of strace.
+
+use super::jobs::{Job, LIMITS};
+use super::trial::{Trial, finding, skipped};
+use crate::judge::{Judged, Outcome};
+use crate::process::{Ended, run_command};
+use crate::random::Random;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::process::{Command, Stdio};
+
+/// System calls on files with the errors to return.
+const CALLS: [(&str, &[&str]); 19] = [
+    ("write", &["ENOSPC", "EIO", "EINTR", "EDQUOT"]),
+    ("writev", &["ENOSPC", "EIO", "EINTR"]),
+    ("pwrite64", &["ENOSPC", "EIO", "EINTR"]),
+    ("openat", &["EACCES", "EIO", "EINTR", "EMFILE", "ENOSPC"]),
+    ("rename", &["EACCES", "EIO", "EXDEV", "ENOSPC"]),
+    ("renameat", &["EACCES", "EIO", "EXDEV"]),
+    ("renameat2", &["EACCES", "EIO", "EXDEV"]),
+    ("fsync", &["EIO", "EINTR", "ENOSPC"]),
+    ("fdatasync", &["EIO", "EINTR"]),
+    ("ftruncate", &["EIO", "EINTR", "ENOSPC"]),
+    ("fallocate", &["EIO", "ENOSPC", "EOPNOTSUPP"]),
+    ("unlink", &["EACCES", "EIO"]),
+    ("mkdir", &["EACCES", "EIO", "ENOSPC"]),
+    ("rmdir", &["EACCES", "EIO"]),
+    ("flock", &["ENOLCK", "EINTR", "EAGAIN"]),
+    ("read", &["EIO", "EINTR"]),
+    ("pread64", &["EIO", "EINTR"]),
+    ("lseek", &["EIO"]),
+    ("copy_file_range", &["EIO", "ENOSPC"]),
+];
+
+/// A call of the undisturbed run: name, number among the calls of this name in its thread, and text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Call {
+    name: String,
+    number: u64,
+    text: String,
+}
+
+/// Lets one call on a file of the run fail, and runs the job again.
+pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
+    if !Command::new("strace").arg("-V").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
+    {
+        return Ok(skipped("strace is missing"));
+    }
+    let calls = calls(trial)?;
+    Job::prepare(trial.folder, trial.has_earlier.then_some(&trial.reference.earlier))?;
+    if calls.is_empty() {
+        return Ok(skipped("strace cannot trace"));
+    }
+    // Kinds of calls are drawn first: most calls are writes.
+    let mut names: Vec<&str> = calls.iter().map(|call| call.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let name = random.pick(&names);
+    let own: Vec<&Call> = calls.iter().filter(|call| call.name == name).collect();
+    let call = random.pick(&own);
+    let errors = CALLS.iter().find(|(known, _)| *known == name).map_or(&["EIO"][..], |(_, errors)| errors);
+    let error = random.pick(errors);
+    let mut command = strace(trial, "/dev/null");
+    command.args(["-e", &format!("inject={name}:error={error}:when={}", call.number)]);
+    command.arg(trial.mesher).args(trial.job.arguments());
+    let run = run_command(command, trial.folder, LIMITS)?;
+    let may_leave = ["unlink", "rmdir"].contains(&name);
+    let outcome = match run.ended {
+        Ended::Code(code) => trial.after_code(code, &run.stderr, may_leave)?,
+        _ => finding("signal", format!("{}: {:?} {}", trial.job.line(), run.ended, run.stderr.trim())),
+    };
+    let outcome = match trial.again(outcome)? {
+        Outcome::Finding { sort, text } => Outcome::Finding { sort, text: format!("{error} of {}: {text}", call.text) },
+        other => other,
+    };
+    Ok(Judged { outcome, seconds: run.seconds, stderr: run.stderr })
+}
+
+fn strace(trial: &Trial, log: &str) -> Command {
+    let mut command = Command::new("strace");
+    let names: Vec<&str> = CALLS.iter().map(|(name, _)| *name).collect();
+    command.args(["-f", "-qq", "-y", "-s", "0", "-o", log, "-e", &format!("trace={}", names.join(","))]);
+    command.current_dir(trial.folder);
+    command
+}
+
+/// Calls of an undisturbed run on files of the output and work folders.
+fn calls(trial: &Trial) -> io::Result<Vec<Call>> {
+    let log = trial.folder.with_extension("strace");
+    let mut command = strace(trial, &log.to_string_lossy());
+    command.arg(trial.mesher).args(trial.job.arguments());
+    run_command(command, trial.folder, LIMITS)?;
+    Ok(parse(&fs::read_to_string(log)?))
+}
+
+/// Calls in a log of strace whose text names the output or work folder.
+fn parse(log: &str) -> Vec<Call> {
+    let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+    let mut calls = Vec::new();
+    for line in log.lines() {
+        let Some((thread, text)) = line.split_once(' ') else { continue };
+        let text = text.trim_start();
+        let Some((name, _)) = text.split_once('(').filter(|(name, _)| !name.starts_with('<')) else { continue };
+        let count = counts.entry((thread, name)).or_default();
+        *count += 1;
+        if ["out/", "work/", "/out>", "/work>"].iter().any(|part| text.contains(part)) {
+            calls.push(Call { name: name.into(), number: *count, text: text.into() });
+        }
+    }
+    calls
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_are_counted_by_thread() {
+        let log = "7 openat(AT_FDCWD</x>, \"/lib/libc.so\") = 3\n\
+                   7 openat(AT_FDCWD</x>, \"out/a.vtu\") = 3</x/out/a.vtu>\n\
+                   8  write(3</x/out/a.vtu>, \"\", 5 <unfinished ...>\n\
+                   8  <... write resumed>) = 5\n";
+        let calls = parse(log);
+        assert_eq!(calls.iter().map(|c| (&*c.name, c.number)).collect::<Vec<_>>(), [("openat", 2), ("write", 1)]);
+    }
+}

@@ -1,0 +1,19 @@
+//! Trials of the mesher: difficult input and faults, limits of time and memory, two checkers, shrinking and a page of results.
+
+mod case;
+mod cli;
+mod faults;
+mod gate;
+mod judge;
+mod kinds;
+mod network;
+mod page;
+mod process;
+mod random;
+mod rotate;
+mod shrink;
+mod state;
+mod surface;
+mod vector;
+
+pub use cli::program;

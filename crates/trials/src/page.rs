@@ -1,0 +1,281 @@
+//! Page of results, from the state file.
+
+use crate::state::{self, Batch};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Families with their headings, in the order of the page.
+const FAMILIES: [(&str, &str, &str); 7] = [
+    ("networks", "Networks", "Each network is meshed without options."),
+    ("refined", "Networks with `--refine`", "The kinds are those above, with the option `--refine`."),
+    ("surfaces", "Surfaces", "Each surface is valid by construction, so a refusal is a finding."),
+    ("soups", "Surfaces that bound no volume", "Each surface is faulty by construction, so a mesh is a finding."),
+    (
+        "complexes",
+        "Complexes with regions",
+        "Complexes are valid by construction, except those with dangling triangles.",
+    ),
+    ("options", "Options at random", "Moderate input with options drawn at random."),
+    (
+        "faults",
+        "Kills and faults",
+        "Valid means: complete files. Refused means: earlier files are intact. In both cases a second run gives the bytes of an undisturbed one.",
+    ),
+];
+
+/// Messages of a kind on the page. The state file has all.
+const MESSAGES: usize = 4;
+
+/// Sum of the batches of a kind.
+#[derive(Clone, Debug, Default)]
+struct Sum {
+    count: u64,
+    valid: u64,
+    valid_by_one: u64,
+    typed: BTreeMap<String, u64>,
+    findings: BTreeMap<(u64, String), String>,
+    seeds: u64,
+    worst: f64,
+    worst_seed: u64,
+}
+
+impl Sum {
+    fn add(&mut self, batch: &Batch) {
+        self.count += batch.count;
+        self.valid += batch.valid;
+        self.valid_by_one += batch.valid_by_one;
+        batch.typed.iter().for_each(|(message, count)| *self.typed.entry(message.clone()).or_default() += count);
+        let findings = batch.findings.iter().map(|f| ((f.seed, f.sort.clone()), batch.version.clone()));
+        self.findings.extend(findings);
+        self.seeds = self.seeds.max(batch.first + batch.count);
+        if batch.worst > self.worst {
+            (self.worst, self.worst_seed) = (batch.worst, batch.worst_seed);
+        }
+    }
+
+    /// Cases without a valid mesh.
+    fn refused(&self) -> u64 {
+        self.typed.values().sum::<u64>() - self.not_faithful()
+    }
+
+    /// Valid meshes beyond a limit, such as that on the distance from the network.
+    fn not_faithful(&self) -> u64 {
+        let is_limit = |message: &str| message.starts_with("1: ") && !message.starts_with("1: NOT valid");
+        self.typed.iter().filter(|(message, _)| is_limit(message)).map(|(_, count)| count).sum()
+    }
+
+    /// Cases that were called valid, and are not by at least one checker.
+    fn wrong(&self) -> usize {
+        self.findings.keys().filter(|(_, sort)| ["called valid", "checkers disagree"].contains(&&**sort)).count()
+    }
+}
+
+/// Writes the page.
+pub fn write(state: &Path, page: &Path) -> io::Result<()> {
+    let batches = state::read(state)?;
+    if batches.is_empty() {
+        return Err(io::Error::other(format!("{}: no results; `anastomesh-trials run` makes them", state.display())));
+    }
+    fs::write(page, text(&batches))
+}
+
+/// Text of the page.
+fn text(batches: &[Batch]) -> String {
+    let mut kinds: BTreeMap<&str, Sum> = BTreeMap::new();
+    batches.iter().filter(|batch| !batch.repeats).for_each(|batch| kinds.entry(&batch.kind).or_default().add(batch));
+    let mut out = head(batches);
+    out += &families(&kinds);
+    for (family, title, note) in FAMILIES {
+        let own: Vec<(&str, &Sum)> = of_family(&kinds, family).collect();
+        if !own.is_empty() {
+            out += &table(family, title, note, &own);
+        }
+    }
+    out + &findings(&kinds, batches)
+}
+
+fn of_family<'a>(kinds: &'a BTreeMap<&str, Sum>, family: &str) -> impl Iterator<Item = (&'a str, &'a Sum)> {
+    let start = format!("{family}/");
+    kinds.iter().filter_map(move |(kind, sum)| Some((kind.strip_prefix(&start)?, sum)))
+}
+
+fn head(batches: &[Batch]) -> String {
+    let dates: BTreeSet<&str> = batches.iter().map(|batch| batch.date.as_str()).collect();
+    let versions: BTreeSet<&str> = batches.iter().map(|batch| batch.version.as_str()).collect();
+    let (first, last) = (dates.first().unwrap_or(&""), dates.last().unwrap_or(&""));
+    format!(
+        "# Trials
+
+`anastomesh-trials` makes difficult input from seeds, runs the program on each case in a process of its own, and checks each mesh with
+`anastomesh check` and `anastomesh-verify`. This page is its output. It is not edited by hand.
+
+<!-- shown: these commands run for as long as they are told -->
+```sh
+cargo build --release -p anastomesh -p anastomesh-verify -p anastomesh-trials
+target/release/anastomesh-trials run --minutes 60                      # continues after the seeds of the last run
+target/release/anastomesh-trials run --minutes 5 --only surfaces/      # the kinds of one table
+target/release/anastomesh-trials case 'surfaces/nested cubes' 3        # one case of one kind
+target/release/anastomesh-trials repeat                                # all findings again
+target/release/anastomesh-trials page                                  # this page
+```
+
+`.ci/long` runs these commands. The seeds of a kind are 0 to the number of cases tried, without it.
+
+Runs from {first} to {last}. Builds: {}.
+
+Each case ends in one of four ways:
+
+- **Valid**: exit code 0, and both checkers accept the mesh. In brackets: cells that the second checker does not read, such as those of
+  second order.
+- **Beyond a limit**: a mesh that both checkers accept, with exit code 1. The message names the limit, such as the distance from the
+  network.
+- **Refused**: a documented exit code with a message. Either no file is at the output, or the exit code is 1 and both checkers agree that
+  the mesh is not valid.
+- **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
+  Limits grow with inputs of more than 2,000 parts.
+
+If N cases are called valid and none is wrong, the share of wrong ones is below 3/N with 95 % confidence.
+
+",
+        versions.iter().map(|v| format!("`{v}`")).collect::<Vec<_>>().join(", ")
+    )
+}
+
+fn families(kinds: &BTreeMap<&str, Sum>) -> String {
+    let mut out = String::from(
+        "## Summary\n\n| family | tried | valid | valid, % | beyond a limit | refused | findings | wrong, called valid | bound 3/N | worst time, s |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for (family, title, _) in FAMILIES {
+        let own: Vec<&Sum> = of_family(kinds, family).map(|(_, sum)| sum).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let sum = |of: &dyn Fn(&Sum) -> u64| own.iter().map(|s| of(s)).sum::<u64>();
+        let (count, valid) = (sum(&|s| s.count), sum(&|s| s.valid + s.valid_by_one));
+        let wrong = sum(&|s| s.wrong() as u64);
+        let worst = own.iter().map(|s| s.worst).fold(0.0, f64::max);
+        let _ = writeln!(
+            out,
+            "| {title} | {} | {} | {:.1} | {} | {} | {} | {wrong} | {} | {worst:.1} |",
+            grouped(count),
+            grouped(valid),
+            percent(valid, count),
+            grouped(sum(&|s| s.not_faithful())),
+            grouped(sum(&|s| s.refused())),
+            sum(&|s| s.findings.len() as u64),
+            bound(wrong, valid),
+        );
+    }
+    out + "\n"
+}
+
+fn table(family: &str, title: &str, note: &str, own: &[(&str, &Sum)]) -> String {
+    let mut out = format!(
+        "## {title}\n\n{note}\n\nCommand: `anastomesh-trials run --only {family}/`\n\n\
+         | kind | tried | valid | valid, % | beyond a limit | refused | findings | bound 3/N | worst time, s (seed) |\n\
+         |---|---|---|---|---|---|---|---|---|\n"
+    );
+    for (kind, sum) in own {
+        let valid = sum.valid + sum.valid_by_one;
+        let by_one = if sum.valid_by_one > 0 { format!(" ({})", grouped(sum.valid_by_one)) } else { String::new() };
+        let _ = writeln!(
+            out,
+            "| {kind} | {} | {}{by_one} | {:.1} | {} | {} | {} | {} | {:.1} ({}) |",
+            grouped(sum.count),
+            grouped(valid),
+            percent(valid, sum.count),
+            grouped(sum.not_faithful()),
+            grouped(sum.refused()),
+            sum.findings.len(),
+            bound(sum.wrong() as u64, valid),
+            sum.worst,
+            sum.worst_seed
+        );
+    }
+    out += "\n| kind | exit code | message | cases |\n|---|---|---|---|\n";
+    for (kind, sum) in own {
+        let mut messages: Vec<(&String, &u64)> = sum.typed.iter().collect();
+        messages.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
+        for (message, count) in messages.iter().take(MESSAGES) {
+            let (code, message) = message.split_once(": ").unwrap_or(("", message));
+            let _ = writeln!(out, "| {kind} | {code} | {} | {} |", code_span(message), grouped(**count));
+        }
+        if messages.len() > MESSAGES {
+            let rest: u64 = messages[MESSAGES..].iter().map(|(_, count)| **count).sum();
+            let _ = writeln!(out, "| {kind} | | other messages: {} | {} |", messages.len() - MESSAGES, grouped(rest));
+        }
+    }
+    out + "\n"
+}
+
+/// Table of findings. A finding is fixed if the last repetition of its case had none.
+fn findings(kinds: &BTreeMap<&str, Sum>, batches: &[Batch]) -> String {
+    let mut out = String::from("## Findings\n\n");
+    if kinds.values().all(|sum| sum.findings.is_empty()) {
+        return out + "No findings.\n";
+    }
+    out += "`anastomesh-trials repeat` runs each finding again with the present build.\n\n\
+            | kind | seed | finding | found with | last repetition |\n|---|---|---|---|---|\n";
+    for (kind, sum) in kinds {
+        for ((seed, sort), version) in &sum.findings {
+            let repeated = batches.iter().rfind(|b| b.repeats && b.kind == *kind && b.first == *seed);
+            let status = match repeated.map(|batch| (batch.findings.first(), &batch.version)) {
+                None => "not repeated".to_owned(),
+                Some((None, version)) => format!("gone with {}", code_span(version)),
+                Some((Some(found), version)) => format!("{} with {}", found.sort, code_span(version)),
+            };
+            let _ = writeln!(out, "| {kind} | {seed} | {sort} | {} | {status} |", code_span(version));
+        }
+    }
+    out
+}
+
+/// Text as code in a cell of a table.
+fn code_span(text: &str) -> String {
+    format!("`{}`", text.replace('`', "'").replace('|', "\\|"))
+}
+
+fn percent(part: u64, whole: u64) -> f64 {
+    100.0 * part as f64 / whole.max(1) as f64
+}
+
+fn bound(wrong: u64, valid: u64) -> String {
+    if wrong > 0 || valid <= 3 { "–".into() } else { format!("{:.1e}", 3.0 / valid as f64) }
+}
+
+/// Integer with commas between groups of three digits.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Finding;
+
+    #[test]
+    fn a_page_has_counts_messages_and_findings() {
+        let mut batch = Batch { kind: "networks/star".into(), count: 1200, valid: 1190, ..Batch::default() };
+        batch.typed.insert("3: it|is `open`".into(), 9);
+        batch.typed.insert("1: not faithful: far".into(), 3);
+        batch.findings.push(Finding { seed: 7, sort: "panic".into(), text: String::new() });
+        let gone = Batch { first: 7, count: 1, valid: 1, repeats: true, version: "next".into(), ..batch.clone() };
+        let gone = Batch { findings: Vec::new(), ..gone };
+        let page = text(&[batch, gone]);
+        assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
+        assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
+        assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |"), "{page}");
+    }
+}
