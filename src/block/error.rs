@@ -153,6 +153,14 @@ pub enum BlockError {
         /// Required minimum of both.
         limits: [f64; 2],
     },
+    /// The wall of the block has a vertex from which no shell can grow, so that a retry is worthwhile.
+    #[error("{block}: the wall is folded near {at:?}")]
+    Folded {
+        /// `cluster 12` or `connector 7`.
+        block: String,
+        /// The vertex.
+        at: [f64; 3],
+    },
     /// The surface of a hollow block is invalid.
     #[error("{block}: invalid surface: the condition '{}' failed", line.statement())]
     Unsound {
@@ -259,7 +267,7 @@ impl BlockError {
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",
             Self::End { .. } => "ends",
-            Self::Faces { .. } | Self::Flat { .. } | Self::Unsound { .. } => "check",
+            Self::Faces { .. } | Self::Flat { .. } | Self::Folded { .. } | Self::Unsound { .. } => "check",
             Self::Connector { attempts, .. } => match attempts.last().map(|attempt| &attempt.failure) {
                 Some(ConnectorFailure::Tetrahedra(_)) => "tetrahedra",
                 Some(ConnectorFailure::Surface(_)) | None => "wall",

@@ -12,9 +12,14 @@ use super::layered::ThinLayers;
 use crate::partition::CutId;
 use anastomesh_mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
 use anastomesh_mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
-use anastomesh_mesh::geometry::Section;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::{Cap, TetMesh};
 use anastomesh_skeleton::NodeId;
+use anastomesh_tet::parts::is_open;
+
+/// Least cosine between a direction away from a wall vertex and the normals of its triangles. Smaller ones are left to the
+/// shells' own smoothing.
+const OPEN: f64 = 0.02;
 
 /// Finished block. Faces are handles in ascending order: `4 · tet + i` for the face opposite vertex `i`. In a hollow
 /// block they are indices of hull triangles.
@@ -160,6 +165,18 @@ impl Finished {
         faces.iter().map(|&face| triangle_of(&self.mesh, &self.hull, face)).collect()
     }
 
+    /// First folded vertex of the wall: no direction leads away from all wall triangles at it, so that no shell can grow.
+    pub fn fold(&self) -> Option<Point3> {
+        let mut normals: FxHashMap<u32, Vec<Vec3>> = FxHashMap::default();
+        for triangle in self.triangles(&self.wall) {
+            let [a, b, c] = triangle.map(|v| self.mesh.points[v as usize]);
+            let inward = (c - a).cross(&(b - a)).try_normalize(0.0).unwrap_or_default();
+            triangle.into_iter().for_each(|v| normals.entry(v).or_default().push(inward));
+        }
+        let folded = normals.iter().filter(|(_, normals)| !is_open(normals, OPEN)).map(|(&v, _)| v).min();
+        folded.map(|v| self.mesh.points[v as usize])
+    }
+
     /// Joint as an end surface with its own points; `None` if it is not a disc.
     pub fn end_surface(&self, joint: usize, cut: CutId, side: u8, section: Section) -> Option<StoredEnd> {
         let FinishedJoint { vertices, faces } = self.joints.get(joint)?;
@@ -213,5 +230,29 @@ impl Faces {
         let mut rest: Vec<u32> = self.left.into_values().collect();
         rest.sort_unstable();
         (rest, self.adjacency)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::shapes::sphere_surface;
+
+    #[test]
+    fn a_fold_of_the_wall_is_found() {
+        let surface = sphere_surface(3);
+        let wall = (0..surface.triangles.len() as u32).collect();
+        let mesh = TetMesh { points: surface.points, tets: Vec::new() };
+        let mut block = Finished { mesh, hull: surface.triangles, wall, ..Finished::default() };
+        assert_eq!(block.fold(), None);
+        // A spike bent down beside the wall: its triangles face away from each other.
+        block.mesh.points[40] *= 1.2;
+        let up = block.mesh.points[40].coords;
+        let aside = up.cross(&Vec3::x()).normalize();
+        block.mesh.points[40] += aside * 2.0;
+        assert!(block.fold().is_some());
+        // Caps are no part of the wall.
+        block.wall.clear();
+        assert_eq!(block.fold(), None);
     }
 }

@@ -60,6 +60,9 @@ pub struct BlockParams {
     /// Create the closed surface only, without tetrahedra.
     #[serde(default)]
     pub hollow: bool,
+    /// The block is good only without a folded vertex on the wall.
+    #[serde(default)]
+    pub unfolded: bool,
 }
 
 fn unstretched() -> f64 {
@@ -84,6 +87,7 @@ impl Default for BlockParams {
             core: 1.0,
             layers: None,
             hollow: false,
+            unfolded: false,
         }
     }
 }
@@ -96,8 +100,8 @@ impl BlockParams {
 
     /// True if no retry parameter is set: only such blocks may use templates.
     pub(super) fn by_template(&self) -> bool {
-        let Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, .. } = *self;
-        *self == Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, ..Self::default() }
+        let Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, unfolded, .. } = *self;
+        *self == Self { rho, follow, ends, allow_fused, stretch, core, layers, hollow, unfolded, ..Self::default() }
     }
 
     pub(super) fn check(&self) -> Result<(), BlockError> {

@@ -87,7 +87,8 @@ pub fn progress(stage: &str, done: u64, total: u64) -> String {
 
 fn said(level: &str, before: &str, message: &str) {
     let line = line(level, before, message, io::stderr().is_terminal());
-    bar::aside(|| eprintln!("{line}"));
+    // On a full disk a message may be lost. The exit code is not.
+    bar::aside(|| drop(writeln!(io::stderr(), "{line}")));
 }
 
 fn line(level: &str, before: &str, message: &str, on_terminal: bool) -> String {

@@ -314,6 +314,7 @@ impl Args {
     fn prepared(&self, mut plan: MeshPlan, flow: FlowPlan, domain: &mut DomainPlan) -> Result<PreparedRun, Failure> {
         let cures = self.cures.params(true);
         let mut file = self.blocks.read(&self.network, cures.radii, &mut plan)?;
+        plan.unfolded = !domain.shells.is_empty();
         self.domain.cut(&mut file, domain, &self.root).map_err(|e| self.no_regions(&e))?;
         let [inlets, outlets] = self.flow.extension();
         let mut run = Run::new(file).plan(plan).prepare(cures).roots(&self.root).extend(inlets, outlets);

@@ -141,31 +141,57 @@ const WAYS_OUT_OF_SLIM: usize = 3;
 struct Bar {
     ratio: f64,
     dihedral: f64,
+    /// No vertex of the wall may be folded.
+    unfolded: bool,
 }
 
 impl Bar {
     fn of(params: &BlockParams) -> Self {
+        let unfolded = params.unfolded;
         if params.layers.is_some() {
-            Self { ratio: FLAT_LAYERS, dihedral: 0.0 }
+            Self { ratio: FLAT_LAYERS, dihedral: 0.0, unfolded }
         } else {
-            Self { ratio: FLAT / params.stretch, dihedral: SLIM / params.stretch }
+            Self { ratio: FLAT / params.stretch, dihedral: SLIM / params.stretch, unfolded }
         }
     }
 
     fn is_passed(self, block: &Finished) -> bool {
-        self.is_not_flat(block) && (!block.hull.is_empty() || block.certificate.least_dihedral() >= self.dihedral)
+        self.will_do(block) && (!block.hull.is_empty() || block.certificate.least_dihedral() >= self.dihedral)
     }
 
     fn is_not_flat(self, block: &Finished) -> bool {
         block.certificate.is_sound() && worst_ratio(block) >= self.ratio
     }
 
-    /// Sort key of blocks; larger is better. Sound blocks precede others, then blocks without flat tetrahedra. Of these, the
-    /// larger smallest dihedral angle is better; of others, the larger worst radius ratio.
-    fn goodness(self, block: &Finished) -> (bool, bool, f64) {
+    fn is_unfolded(self, block: &Finished) -> bool {
+        !self.unfolded || block.fold().is_none()
+    }
+
+    /// Reason why a block does not pass.
+    fn fault(self, name: &str, made: &Finished) -> BlockError {
+        let block = name.to_owned();
+        match made.fold().filter(|_| self.unfolded && self.is_not_flat(made)) {
+            Some(at) => BlockError::Folded { block, at: at.into() },
+            None => BlockError::Flat {
+                block,
+                ratio: made.certificate.worst_ratio(),
+                dihedral: made.certificate.least_dihedral(),
+                limits: [self.ratio, self.dihedral],
+            },
+        }
+    }
+
+    fn will_do(self, block: &Finished) -> bool {
+        self.is_not_flat(block) && self.is_unfolded(block)
+    }
+
+    /// Sort key of blocks; larger is better. Sound blocks precede others, then blocks without flat tetrahedra, then
+    /// those without folded vertices. Of these, the larger smallest dihedral angle is better; of flat ones, the larger worst
+    /// radius ratio.
+    fn goodness(self, block: &Finished) -> (bool, bool, bool, f64) {
         let is_not_flat = self.is_not_flat(block);
         let worst = if is_not_flat { block.certificate.least_dihedral() } else { worst_ratio(block) };
-        (block.certificate.is_sound(), is_not_flat, worst)
+        (block.certificate.is_sound(), is_not_flat, self.is_unfolded(block), worst)
     }
 }
 
@@ -189,8 +215,8 @@ fn first_good(
         let bar = Bar::of(&attempt.params);
         // Vessels that can be kept apart are not taken as one for the sake of a tetrahedron.
         let will_do = |(_, best, made): &(usize, BlockAttempt, Finished)| {
-            best.params.allow_fused != attempt.params.allow_fused
-                || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).is_not_flat(made)
+            best.params.allow_fused != attempt.params.allow_fused && Bar::of(&best.params).is_unfolded(made)
+                || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).will_do(made)
         };
         if best.as_ref().is_some_and(will_do) || tried > 0 && is_over() {
             break;
@@ -201,9 +227,7 @@ fn first_good(
             }
             Ok(made) => {
                 let before = failures.len();
-                let (ratio, dihedral) = (made.certificate.worst_ratio(), made.certificate.least_dihedral());
-                let limits = [bar.ratio, bar.dihedral];
-                failures.push(BlockError::Flat { block: block.to_owned(), ratio, dihedral, limits });
+                failures.push(bar.fault(block, &made));
                 if best.as_ref().is_none_or(|(_, _, best)| bar.goodness(&made) > bar.goodness(best)) {
                     best = Some((before, attempt, made));
                 }

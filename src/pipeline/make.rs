@@ -178,7 +178,7 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     key.float(plan.core);
     key.id(plan.layers.map_or(0, |layers| layers.count));
     plan.layers.iter().flat_map(|layers| [layers.growth, layers.thickness]).for_each(|x| key.float(x));
-    key.id(u32::from(plan.hollow));
+    key.id(u32::from(plan.hollow) + 2 * u32::from(plan.unfolded));
     key.id(match plan.joint {
         JointStyle::Disc => 0,
         JointStyle::Woven => 1,
@@ -255,6 +255,7 @@ mod tests {
             MeshPlan { joint: JointStyle::Woven, ..plan.clone() },
             MeshPlan { fuse: true, ..plan.clone() },
             MeshPlan { hollow: true, ..plan.clone() },
+            MeshPlan { unfolded: true, ..plan.clone() },
         ];
         for other in others {
             assert_ne!(cluster_key(&cluster, &other, true, RetryStrategy::Usual), plain, "{other:?}");

@@ -63,6 +63,8 @@ pub struct MeshPlan {
     pub fuse: bool,
     /// Make only the closed surfaces of the blocks. The result is the boundary of the mesh.
     pub hollow: bool,
+    /// Blocks with a folded vertex on the wall are tried in other ways, too: no shell can grow there.
+    pub unfolded: bool,
     /// Leave out blocks that fail instead of stopping.
     pub keep_going: bool,
     /// Folder for the inputs of failed blocks; `None` writes no dumps.
@@ -83,6 +85,7 @@ anastomesh_mesh::setters!(MeshPlan {
     roots: Vec<u32>,
     fuse: bool,
     hollow: bool,
+    unfolded: bool,
     keep_going: bool,
     dump_dir: impl Into<Option<std::path::PathBuf>>,
 });
@@ -102,6 +105,7 @@ impl Default for MeshPlan {
             roots: Vec::new(),
             fuse: false,
             hollow: false,
+            unfolded: false,
             keep_going: false,
             dump_dir: None,
         }
@@ -175,8 +179,8 @@ impl MeshPlan {
             JointStyle::Woven | JointStyle::None => EndStyle::Disc,
             JointStyle::Disc => EndStyle::Shared,
         };
-        let Self { follow, stretch, core, layers, hollow, .. } = *self;
-        BlockParams { follow, ends, stretch, core, layers, hollow, ..BlockParams::with_rho(self.rho) }
+        let Self { follow, stretch, core, layers, hollow, unfolded, .. } = *self;
+        BlockParams { follow, ends, stretch, core, layers, hollow, unfolded, ..BlockParams::with_rho(self.rho) }
     }
 
     /// The plan of a block that is a tube, where the network says how long its edges are: stretched so.

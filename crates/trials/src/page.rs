@@ -109,8 +109,8 @@ fn head(batches: &[Batch]) -> String {
     format!(
         "# Trials
 
-`anastomesh-trials` makes difficult input from seeds, runs the program on each case in a process of its own, and checks each mesh with
-`anastomesh check` and `anastomesh-verify`. This page is its output. It is not edited by hand.
+`anastomesh-trials` makes difficult input from seeds, and runs the program on each case in a process of its own. `anastomesh check` and
+`anastomesh-verify` check each mesh. This page is its output. It is not edited by hand.
 
 <!-- shown: these commands run for as long as they are told -->
 ```sh
