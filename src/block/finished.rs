@@ -171,7 +171,9 @@ impl Finished {
         for triangle in self.triangles(&self.wall) {
             let [a, b, c] = triangle.map(|v| self.mesh.points[v as usize]);
             let inward = (c - a).cross(&(b - a)).try_normalize(0.0).unwrap_or_default();
-            triangle.into_iter().for_each(|v| normals.entry(v).or_default().push(inward));
+            for v in triangle {
+                normals.entry(v).or_default().push(inward);
+            }
         }
         let folded = normals.iter().filter(|(_, normals)| !is_open(normals, OPEN)).map(|(&v, _)| v).min();
         folded.map(|v| self.mesh.points[v as usize])
