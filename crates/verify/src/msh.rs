@@ -15,15 +15,15 @@ pub fn read(bytes: &[u8]) -> Read<Mesh> {
     let head = String::from_utf8_lossy(&head[..head.len().min(30)]).into_owned();
     let mut words = head.split_ascii_whitespace();
     let (version, is_binary) = (words.next().unwrap_or_default(), words.next() == Some("1"));
-    let mut mesh = Mesh::default();
-    names(bytes, &mut mesh)?;
-    notes(bytes, &mut mesh)?;
+    let mut parts = Parts::default();
+    names(bytes, &mut parts.mesh)?;
+    notes(bytes, &mut parts)?;
     match version {
         "4.1" => {
             let body = |name| Cursor { rest: section(bytes, name).unwrap_or_default(), is_binary };
-            Parts { mesh, numbers: HashMap::new() }.read_4(body("Entities"), body("Nodes"), body("Elements"))
+            parts.read_4(body("Entities"), body("Nodes"), body("Elements"))
         }
-        "2.2" if !is_binary => Parts { mesh, numbers: HashMap::new() }.read_2(bytes),
+        "2.2" if !is_binary => parts.read_2(bytes),
         other => fail(format!("MSH {other}{} is not supported", if is_binary { " binary" } else { "" })),
     }
 }
@@ -58,7 +58,7 @@ fn names(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
 }
 
 /// Section of `anastomesh` with the expectation and the caps.
-fn notes(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
+fn notes(bytes: &[u8], Parts { mesh, regions, .. }: &mut Parts) -> Read<()> {
     let json = text(bytes, "Anastomesh")?;
     if json.trim().is_empty() {
         return Ok(());
@@ -66,6 +66,8 @@ fn notes(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
     let Ok(notes) = serde_json::from_str::<Value>(json) else { return fail("section $Anastomesh is not JSON") };
     let list = |name: &str| notes[name].as_array().map(|list| list.iter().filter_map(Value::as_i64).collect());
     (mesh.expected_loops, mesh.expected_terminals) = (list("loops"), list("terminals"));
+    let pairs = notes["groups"].as_array().into_iter().flatten();
+    regions.extend(pairs.filter_map(|pair| Some((pair[1].as_i64()?, pair[0].as_i64()?))));
     for region in notes["regions"].as_array().into_iter().flatten() {
         let name = region["name"].as_str().unwrap_or_default();
         mesh.regions.push((region["id"].as_i64().unwrap_or(-1), name.to_owned()));
@@ -83,10 +85,14 @@ fn notes(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
     Ok(())
 }
 
-/// Mesh under construction, with the index of each node by its number in the file.
+/// Mesh under construction.
+#[derive(Default)]
 struct Parts {
     mesh: Mesh,
+    /// Index of each node by its number in the file.
     numbers: HashMap<i64, u32>,
+    /// Region of each physical group that is not its number.
+    regions: HashMap<i64, i64>,
 }
 
 impl Parts {
@@ -105,7 +111,7 @@ impl Parts {
             (TETRAHEDRON, &[a, b, c, d]) => {
                 self.mesh.tets.push([a, b, c, d].map(vertex));
                 if !self.mesh.regions.is_empty() {
-                    self.mesh.tet_regions.push(label);
+                    self.mesh.tet_regions.push(self.regions.get(&label).copied().unwrap_or(label));
                 }
             }
             (TRIANGLE, &[a, b, c]) => {

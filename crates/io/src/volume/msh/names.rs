@@ -4,6 +4,7 @@ use crate::volume::content::MeshNotes;
 use anastomesh_mesh::check::Expectation;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::{Cap, NamedRegion, Patch};
+use rustc_hash::FxHashMap;
 
 /// Gmsh element types.
 pub(super) const MSH_TRIANGLE: i32 = 2;
@@ -35,6 +36,38 @@ pub(super) struct Extra {
     caps: Vec<ExtraCap>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     regions: Vec<NamedRegion>,
+    /// Physical groups that are not the numbers of their regions.
+    #[serde(default, skip_serializing_if = "RegionGroups::is_empty")]
+    pub(super) groups: RegionGroups,
+}
+
+/// Physical groups of regions. A group is the number of its region if that is positive, as the format requires. Others get the
+/// next numbers above all. Holds pairs of region and group for these.
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct RegionGroups(Vec<[i32; 2]>);
+
+impl RegionGroups {
+    pub(super) fn of(regions: &[NamedRegion]) -> Self {
+        let ids = || regions.iter().map(|region| region.id);
+        let free = ids().max().unwrap_or(0).max(0).checked_add(1).map(|first| first..=i32::MAX);
+        let others = ids().filter(|&id| id <= 0);
+        Self(others.zip(free.into_iter().flatten()).map(Into::into).collect())
+    }
+
+    /// Group of a region; `None` for a number that is not positive and not in the list.
+    pub(super) fn of_region(&self, id: i32) -> Option<i32> {
+        let other = || self.0.iter().find(|pair| pair[0] == id).map(|pair| pair[1]);
+        if id > 0 { Some(id) } else { other() }
+    }
+
+    /// Region of each group that is not its number.
+    pub(super) fn regions(&self) -> FxHashMap<i32, i32> {
+        self.0.iter().map(|&[region, group]| (group, region)).collect()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
 }
 
 /// Cap in the custom section.
@@ -63,6 +96,7 @@ impl Extra {
             terminals: notes.expectation.as_ref().map(|expected| expected.terminals.clone()),
             caps: patches.iter().filter_map(|p| p.cap.as_ref().map(|c| cap(p.id, c))).collect(),
             regions: notes.regions.clone(),
+            groups: RegionGroups::of(&notes.regions),
         }
     }
 

@@ -252,12 +252,14 @@ impl MshSections {
         volume.boundary = faces;
         let (tets_10, triangles_6) = self.second_order();
         file.second_order = separate_midpoints(volume, tets_10, triangles_6)?;
-        let (notes, caps) = std::mem::take(&mut self.extra).into_notes();
+        let extra = std::mem::take(&mut self.extra);
+        let regions = extra.groups.regions();
+        self.tets.iter_mut().for_each(|tet| tet.2 = regions.get(&tet.2).copied().unwrap_or(tet.2));
+        let (notes, caps) = extra.into_notes();
         file.notes = notes;
         if file.notes.regions.is_empty() {
             file.notes.regions = self.regions();
         }
-        self.restore_groups(&mut file.notes.regions);
         let has_regions = !file.notes.regions.is_empty();
         volume.tet_block = self.tets.iter().map(|tet| if has_regions { tet.2 } else { 0 }).collect();
         // Triangles without a group are not a labelled boundary.
@@ -281,21 +283,6 @@ impl MshSections {
         self.triangles_6.sort_by_key(|&(tag, _)| tag);
         let tets = self.tets_10.iter().map(|(_, nodes)| nodes.map(|tag| self.index(tag))).collect();
         (tets, self.triangles_6.iter().map(|(_, nodes)| nodes.map(|tag| self.index(tag))).collect())
-    }
-
-    /// Gives tetrahedra without a group their region: physical groups are positive, so that regions with another id have
-    /// none. Several of them are one region after reading.
-    fn restore_groups(&mut self, regions: &mut Vec<NamedRegion>) {
-        if regions.is_empty() || self.tets.iter().all(|tet| tet.2 != 0) {
-            return;
-        }
-        let ids: Vec<i32> = regions.iter().map(|region| region.id).filter(|&id| id <= 0).collect();
-        if let [id] = ids[..] {
-            self.tets.iter_mut().filter(|tet| tet.2 == 0).for_each(|tet| tet.2 = id);
-            return;
-        }
-        regions.retain(|region| region.id > 0);
-        regions.insert(0, NamedRegion::numbered(0));
     }
 
     /// Regions of a file without a list of them. A single group names the whole mesh; several groups are regions.

@@ -79,18 +79,23 @@ fn regions_become_volumes() {
 }
 
 #[test]
-fn regions_without_a_positive_id_have_no_group() {
+fn regions_without_a_positive_id_get_free_groups() {
     let (mut volume, mut notes) = labelled_tube(5);
-    for (ids, back) in [([-9, 7], vec![-9, 7]), ([0, 7], vec![0, 7]), ([-9, -3], vec![0])] {
+    for (ids, names) in [
+        ([-9, 7], ["3 8 \"region_-9\"", "3 7 \"region_7\""]),
+        ([0, 7], ["3 8 \"region_0\"", "3 7 \"region_7\""]),
+        ([-9, -3], ["3 1 \"region_-9\"", "3 2 \"region_-3\""]),
+    ] {
         volume.tet_block.iter_mut().enumerate().for_each(|(tet, block)| *block = ids[tet % 2]);
         notes.regions = NamedRegion::all_numbered(ids);
         for write in WRITERS {
             let mut bytes = Vec::new();
             write(&mut bytes, &volume, &notes).unwrap();
             let file = read(&bytes).unwrap();
-            assert_eq!(file.notes.regions, NamedRegion::all_numbered(back.iter().copied()));
-            let expected = |&block: &i32| if back.contains(&block) { block } else { 0 };
-            assert!(file.volume.tet_block.iter().copied().eq(volume.tet_block.iter().map(expected)), "{ids:?}");
+            assert_eq!(file.notes.regions, NamedRegion::all_numbered(ids));
+            assert_eq!(file.volume.tet_block, volume.tet_block, "{ids:?}");
+            let text = String::from_utf8_lossy(&bytes);
+            assert!(names.iter().all(|name| text.contains(name)), "{ids:?}");
         }
     }
 }

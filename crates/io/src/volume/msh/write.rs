@@ -1,7 +1,7 @@
 //! Writer of Gmsh's binary format.
 
 use super::elements::ElementNodes;
-use super::names::{Extra, SECTION, VOLUME_NAME};
+use super::names::{Extra, RegionGroups, SECTION, VOLUME_NAME};
 use super::surfaces::{Surfaces, run};
 use super::tags::Tags;
 use super::values::write_values;
@@ -17,7 +17,7 @@ use std::io::{self, Write};
 
 /// Volume entity with a part of the tetrahedra.
 pub(super) struct Volume {
-    /// Physical group and its name; `None` for regions with an invalid tag.
+    /// Physical group and its name; `None` for regions that have no positive number and no name.
     group: Option<(i32, String)>,
     /// Number of tetrahedra.
     tets: usize,
@@ -41,8 +41,9 @@ pub(super) fn volumes_of(mesh: &dyn MeshSource, notes: &MeshNotes, surfaces: &Su
             Ok(())
         })?;
         if !sizes.is_empty() {
+            let groups = RegionGroups::of(&notes.regions);
             let volume = |(id, tets)| Volume {
-                group: Some((id, NamedRegion::name_of(&notes.regions, id))).filter(|&(id, _)| id > 0),
+                group: groups.of_region(id).map(|group| (group, NamedRegion::name_of(&notes.regions, id))),
                 tets,
                 region: Some(id),
             };

@@ -1,7 +1,7 @@
 //! Writer of Gmsh's older format 2.2 as text, read by MFEM, NGSolve, OpenFOAM's converter and others.
 
 use super::elements::ElementNodes;
-use super::names::{Extra, SECTION, VOLUME_NAME, kind_of_cell, kind_of_face};
+use super::names::{Extra, RegionGroups, SECTION, VOLUME_NAME, kind_of_cell, kind_of_face};
 use super::values::write_values_2;
 use crate::volume::content::MeshNotes;
 use crate::volume::second::WithMiddles;
@@ -20,6 +20,8 @@ struct Groups {
     regions: BTreeSet<i32>,
     /// Names of the regions.
     names: Vec<NamedRegion>,
+    /// Physical groups of the regions.
+    groups: RegionGroups,
     /// Group of all tetrahedra, above all patches.
     lumen: i32,
 }
@@ -39,12 +41,13 @@ impl Groups {
                 Ok(())
             })?;
         }
-        Ok(Self { regions, names: notes.regions.clone(), lumen: largest.max(0).saturating_add(1) })
+        let groups = RegionGroups::of(&notes.regions);
+        Ok(Self { regions, names: notes.regions.clone(), groups, lumen: largest.max(0).saturating_add(1) })
     }
 
-    /// Group of a tetrahedron; 0 (none) for regions with an invalid group id.
+    /// Group of a tetrahedron; 0 (none) for regions that have no positive number and no name.
     fn of_tet(&self, block: i32) -> i32 {
-        if self.regions.is_empty() { self.lumen } else { block.max(0) }
+        if self.regions.is_empty() { self.lumen } else { self.groups.of_region(block).unwrap_or(0) }
     }
 
     /// Groups of tetrahedra with their names.
@@ -52,8 +55,8 @@ impl Groups {
         if self.regions.is_empty() {
             return vec![(self.lumen, VOLUME_NAME.into())];
         }
-        let named = |&id: &i32| (id, NamedRegion::name_of(&self.names, id));
-        self.regions.iter().filter(|&&id| id > 0).map(named).collect()
+        let named = |&id: &i32| Some((self.groups.of_region(id)?, NamedRegion::name_of(&self.names, id)));
+        self.regions.iter().filter_map(named).collect()
     }
 }
 
