@@ -9,7 +9,7 @@ use super::lone_tube::lone_tube;
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
 use super::template::FilledTube;
-use super::webs::webs;
+use super::webs::{Gaps, webs};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::surface::{
     CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SizedWall, SurfaceParams, cap_terminals,
@@ -234,20 +234,21 @@ fn cluster_surface(
     let mut wall = make(&tubes)?;
     let [mut handles, mut loops] = count(&wall)?;
     let mut closed_gaps = Vec::new();
-    if handles > loops && params.close_gaps {
+    if params.close_gaps {
         let open = wall.mesh.clone();
-        for spare in [false, true] {
-            if handles == loops {
-                break;
-            }
-            let webs = webs(&open, cluster, spare, watch).map_err(stopped)?;
+        let kinds: &[Gaps] = if handles > loops { &[Gaps::Enclosed, Gaps::Inner] } else { &[Gaps::Ends] };
+        for &kind in kinds {
+            let webs = webs(&open, cluster, kind, watch).map_err(stopped)?;
             if webs.gaps.is_empty() {
-                break;
+                return Err(BlockError::NoGap { cluster: id });
             }
             tubes = Cow::Owned([&cluster.tubes[..], &webs.tubes].concat());
             closed_gaps = webs.gaps;
             wall = make(&tubes)?;
             [handles, loops] = count(&wall)?;
+            if handles == loops {
+                break;
+            }
         }
     }
     if handles != loops && !params.allow_fused {

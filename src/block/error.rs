@@ -82,6 +82,12 @@ pub enum BlockError {
         /// Point on the axis of one of them.
         at: [f64; 3],
     },
+    /// There is no narrow gap to close ([`super::BlockParams::close_gaps`]): another try with the same wall would be in vain.
+    #[error("cluster {}: no narrow gap to close", cluster.0)]
+    NoGap {
+        /// The cluster.
+        cluster: ClusterId,
+    },
     /// The caller asked for a stop, or the cluster exceeds its budget.
     #[error("cluster {}: {source}", cluster.0)]
     Stopped {
@@ -262,7 +268,11 @@ impl BlockError {
     pub fn stage(&self) -> &'static str {
         match self {
             Self::Parameter { .. } | Self::NoWovenJoints => "parameters",
-            Self::Surface { .. } | Self::Genus { .. } | Self::Outside { .. } | Self::Fused { .. } => "wall",
+            Self::Surface { .. }
+            | Self::Genus { .. }
+            | Self::Outside { .. }
+            | Self::Fused { .. }
+            | Self::NoGap { .. } => "wall",
             Self::Stopped { .. } | Self::Memory { .. } => "budget",
             Self::Cap { .. } => "caps",
             Self::Tetrahedra { .. } => "tetrahedra",

@@ -43,7 +43,7 @@ pub struct BlockParams {
     /// ([`super::ClusterMesh::handles`]). Tips inside another vessel have no cap ([`super::ClusterMesh::uncapped`]).
     pub allow_fused: bool,
     /// Close narrow gaps between vessels that touch beyond a bifurcation, where the wall has more handles than the skeleton
-    /// has loops.
+    /// has loops. Otherwise fill the narrow ends of crotches.
     #[serde(default)]
     pub close_gaps: bool,
     /// Maximum depth of an end surface below its plane, in radii of the cut.

@@ -43,16 +43,28 @@ pub(super) struct Webs {
     pub gaps: Vec<Point3>,
 }
 
-/// Webs in the narrow gaps between vessels of a cluster whose wall does not part them. With `spare`, the outermost gap of each pair
-/// of vessels stays open, as it may belong to a loop of the vessels.
+/// Gaps to close.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Gaps {
+    /// Those that the wall encloses.
+    Enclosed,
+    /// Those that the wall encloses, without the outermost gap of each pair of vessels, which may belong to a loop of the vessels.
+    Inner,
+    /// The narrow ends of crotches, where the wall begins to part the vessels.
+    Ends,
+}
+
+/// Webs in the narrow gaps between vessels of a cluster.
 ///
 /// # Errors
 /// [`Stop`] if the watch stops it.
-pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, spare: bool, watch: &Watch) -> Result<Webs, Stop> {
+pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, gaps: Gaps, watch: &Watch) -> Result<Webs, Stop> {
     let graph = Graph::of(&cluster.tubes);
     let mut walls = WallSearch::new(wall);
+    let spare = gaps == Gaps::Inner;
     let mut found = Vec::new();
-    for (pair, points, radii) in touching(&cluster.tubes).into_iter().take(MOST_PAIRS) {
+    let pairs = if gaps == Gaps::Ends { Vec::new() } else { touching(&cluster.tubes) };
+    for (pair, points, radii) in pairs.into_iter().take(MOST_PAIRS) {
         watch.spend(cluster.tubes.len())?;
         let course = graph.course(pair, points, FAR * radii);
         found.extend(course.and_then(|course| Slit::along(&course, &mut walls).web(spare)));
@@ -61,7 +73,7 @@ pub(super) fn webs(wall: &TriMesh, cluster: &Cluster, spare: bool, watch: &Watch
     for course in crotches(&graph) {
         watch.spend(MOST_ROWS)?;
         let slit = Slit::along(&course, &mut walls);
-        found.extend(slit.web(spare));
+        found.extend(slit.web(spare).filter(|_| gaps != Gaps::Ends));
         ends.extend(slit.end());
     }
     if found.is_empty() {
@@ -136,21 +148,28 @@ struct Row {
     ends: [Point3; 2],
     /// Distance between the tubes at the two points; negative if they overlap.
     gap: f64,
-    /// Smaller and larger radius.
-    thinner: f64,
-    wider: f64,
+    /// Radii at the two points.
+    radii: [f64; 2],
 }
 
 impl Row {
     fn at(course: &Course, along: f64) -> Self {
         let ((p, rp), (q, rq)) = (course.at(along), course.at(course.length() - along));
-        Self { ends: [p, q], gap: (q - p).norm() - rp - rq, thinner: rp.min(rq), wider: rp.max(rq) }
+        Self { ends: [p, q], gap: (q - p).norm() - rp - rq, radii: [rp, rq] }
     }
 
-    /// Point and radius of the web.
+    /// Width of the gap in radii of the wider vessel.
+    fn width(&self) -> f64 {
+        self.gap / self.radii[0].max(self.radii[1])
+    }
+
+    /// Point and radius of the web, in the middle of the gap.
     fn web(&self) -> (Point3, f64) {
         let [p, q] = &self.ends;
-        (nalgebra::center(p, q), 0.5 * self.gap.max(0.0) + OVERLAP * self.thinner)
+        let [rp, rq] = self.radii;
+        let across = (q - p).try_normalize(0.0).unwrap_or_default();
+        let middle = nalgebra::center(&(p + rp * across), &(q - rq * across));
+        (middle, 0.5 * self.gap.max(0.0) + OVERLAP * rp.min(rq))
     }
 }
 
@@ -168,7 +187,7 @@ impl Slit {
         let count = ((0.5 * length / step).ceil() as usize).min(MOST_ROWS);
         let rows = (0..count).map(|i| Row::at(course, 0.5 * length * i as f64 / count as f64));
         // Where the vessels are further apart at first, they are separate.
-        let rows: Vec<Row> = rows.skip_while(|row| row.gap > WIDEST * row.wider).collect();
+        let rows: Vec<Row> = rows.skip_while(|row| row.width() > WIDEST).collect();
         let open = rows.iter().map(|row| walls.is_parted(&row.ends[0], &row.ends[1])).collect();
         Self { rows, open }
     }
@@ -195,7 +214,7 @@ impl Slit {
 
     fn covered(&self, first: usize, last: usize) -> Option<Web> {
         let covered = &self.rows[first.saturating_sub(BEYOND)..(last + BEYOND).min(self.rows.len())];
-        let width = covered.iter().map(|row| row.gap / row.wider).fold(0.0, f64::max);
+        let width = covered.iter().map(Row::width).fold(0.0, f64::max);
         let points = || covered.iter().map(Row::web).collect();
         (width <= WIDEST).then(|| Web { points: points(), width })
     }
@@ -252,7 +271,7 @@ mod tests {
             let cluster = eye(height);
             let open = wall(&cluster.tubes, 0.3);
             assert_eq!(euler_characteristic(&open), 0, "height {height}");
-            let webs = webs(&open, &cluster, false, &Watch::NOBODY).unwrap();
+            let webs = webs(&open, &cluster, Gaps::Enclosed, &Watch::NOBODY).unwrap();
             assert_eq!(!webs.gaps.is_empty(), is_closed, "height {height}");
             if is_closed {
                 let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.3);
@@ -280,7 +299,7 @@ mod tests {
         for direction in (0..36).map(|i| 5.0 * f64::from(i)) {
             let cluster = narrow_fork(direction);
             let open = wall(&cluster.tubes, 0.67);
-            let webs = webs(&open, &cluster, false, &Watch::NOBODY).unwrap();
+            let webs = webs(&open, &cluster, Gaps::Enclosed, &Watch::NOBODY).unwrap();
             let has_handle = euler_characteristic(&open) < 2;
             with_handles += usize::from(has_handle);
             let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.67);
@@ -308,7 +327,7 @@ mod tests {
                 continue;
             }
             with_handles += 1;
-            let webs = webs(&open, &cluster, true, &Watch::NOBODY).unwrap();
+            let webs = webs(&open, &cluster, Gaps::Inner, &Watch::NOBODY).unwrap();
             let closed = wall(&[cluster.tubes, webs.tubes].concat(), 0.67);
             assert_eq!(euler_characteristic(&closed), 0, "{direction}°");
         }

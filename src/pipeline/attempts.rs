@@ -111,15 +111,15 @@ struct BlockAttempt {
 /// Attempts at a cluster. `overlapping`: vessels of the network overlap in it, or are so close that their tubes may.
 /// `first`: first strategy to try.
 ///
-/// If neither another grid nor a finer one with a narrower kernel separates such vessels, narrow gaps between them are
-/// closed. If that fails, too, they are fused. With `plan.fuse`, they are fused at once.
+/// If neither another grid nor a finer one with a narrower kernel gives a block, narrow gaps between vessels are closed. If that
+/// fails, too, vessels that overlap are fused. With `plan.fuse`, they are fused at once.
 fn attempts(plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Vec<BlockAttempt> {
     let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first);
     let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
     let apart = apart.map(|way| BlockAttempt { name: way.name().into(), params: way.params(plan) });
-    let closed = apart.clone().filter(|_| overlapping).map(|attempt: BlockAttempt| BlockAttempt {
-        name: format!("narrow gaps closed, {}", attempt.name),
-        params: BlockParams { close_gaps: true, ..attempt.params },
+    let closed = ways().filter(|way| way.may_part() && !(overlapping && plan.fuse)).map(|way| BlockAttempt {
+        name: format!("narrow gaps closed, {}", way.name()),
+        params: BlockParams { close_gaps: true, ..way.params(plan) },
     });
     let fused = ways().filter(|_| overlapping).map(|way| BlockAttempt {
         name: format!("vessels that overlap taken as one, {}", way.name()),
@@ -487,7 +487,7 @@ mod tests {
             attempts(plan, overlapping, RetryStrategy::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
         };
         let plan = MeshPlan::default();
-        assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len()]);
+        assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len() + 5]);
         assert_eq!(
             fused(&plan, true),
             [[false; 5].as_slice(), &[false; 5], &[true; RetryStrategy::ALL.len()]].concat()
