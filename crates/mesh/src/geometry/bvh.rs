@@ -97,6 +97,14 @@ impl Bvh {
 
     /// Calls `found` for every box that overlaps `aabb`.
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
+        self.any(aabb, |i| {
+            found(i);
+            false
+        });
+    }
+
+    /// True if `is` holds for a box that overlaps `aabb`. No further box is tried then.
+    pub fn any(&self, aabb: &Aabb, mut is: impl FnMut(u32) -> bool) -> bool {
         let mut stack = [0_u32; STACK];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -112,12 +120,11 @@ impl Bvh {
                 depth += 2;
                 continue;
             }
-            for i in node.range() {
-                if self.boxes[i].overlaps(aabb) {
-                    found(self.items[i]);
-                }
+            if node.range().any(|i| self.boxes[i].overlaps(aabb) && is(self.items[i])) {
+                return true;
             }
         }
+        false
     }
 
     /// Calls `found(a, b)`, a < b, once for every pair of overlapping boxes of this tree.

@@ -4,6 +4,7 @@
 
 use anastomesh_mesh::geometry::hilbert::hilbert_keys;
 use anastomesh_mesh::geometry::{Aabb, Point3};
+use rayon::prelude::*;
 
 /// Maximum points of a leaf of the search tree.
 const LEAF: usize = 8;
@@ -13,6 +14,12 @@ const TOLERANCE: f64 = 0.02;
 
 /// Depth of the stack of a search, sufficient for 2^32 points.
 const STACK: usize = 64;
+
+/// Places whose searches begin with the point before.
+const CHUNK: usize = 1 << 10;
+
+/// Index in place of a point.
+const NONE: usize = usize::MAX;
 
 /// Search tree over points with lengths. Node `i` has the children `2 i + 1` and `2 i + 2`, with a half of its points each.
 #[derive(Clone, Debug)]
@@ -85,30 +92,49 @@ impl Grading {
 
     /// Length at a place; the maximum without points.
     pub fn at(&self, p: &Point3) -> f64 {
-        self.search(p, self.most, 0.0)
+        self.search(p, (self.most, NONE), 0.0).0
+    }
+
+    /// Lengths at places. Each search begins with the point that gave the length before, so places should be near each other.
+    pub fn along(&self, places: &[Point3]) -> Vec<f64> {
+        let in_turn = |places: &[Point3]| {
+            let mut by = NONE;
+            let next = |p: &Point3| {
+                let first = self.points.get(by).map_or(f64::INFINITY, |from| self.grown(from, p));
+                let found = self.search(p, if first < self.most { (first, by) } else { (self.most, NONE) }, 0.0);
+                by = found.1;
+                found.0
+            };
+            places.iter().map(next).collect::<Vec<f64>>()
+        };
+        places.par_chunks(CHUNK).flat_map_iter(in_turn).collect()
     }
 
     /// True if the length at a place is less than `limit`.
     pub fn is_below(&self, p: &Point3, limit: f64) -> bool {
-        self.most < limit || self.search(p, limit, limit) < limit
+        self.most < limit || self.search(p, (limit, NONE), limit).0 < limit
     }
 
-    /// Least length at a place, or `most`. The search ends at a length below `enough`.
-    fn search(&self, p: &Point3, most: f64, enough: f64) -> f64 {
-        let mut best = most;
+    /// Length at a place due to one point.
+    fn grown(&self, (q, h): &(Point3, f64), p: &Point3) -> f64 {
+        h + self.slope * (p - q).norm()
+    }
+
+    /// Least length at a place with its point, or `best`. The search ends at a length below `enough`.
+    fn search(&self, p: &Point3, mut best: (f64, usize), enough: f64) -> (f64, usize) {
         let mut stack = [(0.0, 0, 0, 0); STACK];
         stack[0] = (self.nodes[0].bound(p, self.slope), 0, 0, self.points.len());
         let mut depth = 1;
-        while depth > 0 && best >= enough {
+        while depth > 0 && best.0 >= enough {
             depth -= 1;
             let (bound, node, start, end) = stack[depth];
-            if start == end || bound >= (1.0 - TOLERANCE) * best {
+            if start == end || bound >= (1.0 - TOLERANCE) * best.0 {
                 continue;
             }
             let left = 2 * node + 1;
             if left >= self.nodes.len() {
-                let lengths = self.points[start..end].iter().map(|(q, h)| h + self.slope * (p - q).norm());
-                best = lengths.fold(best, f64::min);
+                let lengths = self.points[start..end].iter().map(|from| self.grown(from, p)).zip(start..);
+                best = lengths.fold(best, |best, next| if next.0 < best.0 { next } else { best });
                 continue;
             }
             let middle = start.midpoint(end);
@@ -139,6 +165,8 @@ mod tests {
             let exact = all.fold(f64::INFINITY, f64::min);
             let found = grading.at(&p);
             assert!(found >= exact && found <= exact / (1.0 - TOLERANCE), "{found} {exact}");
+            let along = grading.along(&[p * 1.01, p])[1];
+            assert!(along >= exact && along <= exact / (1.0 - TOLERANCE), "{along} {exact}");
             assert!(grading.is_below(&p, 1.1 * exact) && !grading.is_below(&p, 0.99 * exact));
         }
         let none = Grading::new([], 0.4, 2.0);

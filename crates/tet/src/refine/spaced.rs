@@ -89,8 +89,7 @@ pub fn spaced_after(first: &[Point3], second: &[Point3], grading: &Grading) -> V
     let from = points.first().map_or_else(Point3::origin, |p| *p);
     // Cube indices count from a point of the lattice.
     let local = |p: &Point3| Point3::from(p - from);
-    let mut order: Vec<(f64, u32)> =
-        points.par_iter().zip(0..points.len() as u32).map(|(p, i)| (grading.at(p), i)).collect();
+    let mut order: Vec<(f64, u32)> = grading.along(&points).into_iter().zip(0..).collect();
     order
         .par_sort_unstable_by(|a, b| is_second(a.1).cmp(&is_second(b.1)).then(a.0.total_cmp(&b.0)).then(a.1.cmp(&b.1)));
     let steepest = 1.0 + SPACING * grading.slope().min(MAX_SLOPE);

@@ -42,17 +42,13 @@ impl<'a> Wall<'a> {
             let axis = i / 2;
             let mut end = *p;
             end[axis] = if i % 2 == 0 { f64::NEG_INFINITY } else { f64::INFINITY };
-            let mut hit = false;
-            self.bvh.query(&Aabb { min: p.inf(&end), max: p.sup(&end) }, |t| {
-                if !hit {
-                    let [a, b, c] = self.surface.triangles[t as usize].map(|v| self.surface.points[v as usize] - p);
-                    let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-                    let side = |u: &Vec3, v: &Vec3| u[x] * v[y] - u[y] * v[x];
-                    let (w, u, v) = (side(&a, &b), side(&b, &c), side(&c, &a));
-                    hit = (w >= 0.0 && u >= 0.0 && v >= 0.0) || (w <= 0.0 && u <= 0.0 && v <= 0.0);
-                }
-            });
-            hit
+            self.bvh.any(&Aabb { min: p.inf(&end), max: p.sup(&end) }, |t| {
+                let [a, b, c] = self.surface.triangles[t as usize].map(|v| self.surface.points[v as usize] - p);
+                let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+                let side = |u: &Vec3, v: &Vec3| u[x] * v[y] - u[y] * v[x];
+                let (w, u, v) = (side(&a, &b), side(&b, &c), side(&c, &a));
+                (w >= 0.0 && u >= 0.0 && v >= 0.0) || (w <= 0.0 && u <= 0.0 && v <= 0.0)
+            })
         })
     }
 
@@ -79,16 +75,12 @@ impl<'a> Wall<'a> {
     /// True if a point is far enough from the wall. `side` is that of its smallest cube.
     pub fn is_clear(&self, p: &Point3, side: f64) -> bool {
         let reach = self.clearance * 2.0 * side;
-        let mut clear = true;
-        self.bvh.query(&Aabb { min: *p, max: *p }.grown(reach), |t| {
-            if clear {
-                let t = self.surface.triangles[t as usize];
-                let corners = t.map(|v| self.surface.points[v as usize]);
-                let (foot, distance) = point_triangle(p, corners.each_ref());
-                clear = distance >= self.clearance * self.size_on(&t, &corners, &foot).min(2.0 * side);
-            }
-        });
-        clear
+        !self.bvh.any(&Aabb { min: *p, max: *p }.grown(reach), |t| {
+            let t = self.surface.triangles[t as usize];
+            let corners = t.map(|v| self.surface.points[v as usize]);
+            let (foot, distance) = point_triangle(p, corners.each_ref());
+            distance < self.clearance * self.size_on(&t, &corners, &foot).min(2.0 * side)
+        })
     }
 
     /// Edge length at a point of a triangle, interpolated from its corners.
