@@ -42,7 +42,7 @@ use anastomesh_domain::{DomainError, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
-use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_io::{AtomicFile, ensure_text_writable, text_to_commit};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -411,6 +411,8 @@ impl Args {
         if second.as_ref().is_some_and(|second| !second.is_balanced) {
             bars.note(UNBALANCED);
         }
+        // Complete before the mesh appears, so that a full disk cannot leave a mesh beside the table of an earlier one.
+        let table = made.caps.as_ref().map(|caps| self.write_table(caps, &made.networks.names)).transpose()?;
         let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
         let mut parts = Vec::new();
@@ -418,8 +420,8 @@ impl Args {
             let split = || write_regions(&self.output, written, &notes, self.grid.options(), bars);
             parts = bars.during(Stage::Write, split).map_err(|e| failed(&e))?;
         }
-        if let Some(caps) = &made.caps {
-            self.write_table(caps, &made.networks.names)?;
+        if let Some(table) = table {
+            table.commit().map_err(|e| self.no_table(&e))?;
         }
         self.certificate.write(&Certified {
             input: &self.network.network,
@@ -525,10 +527,10 @@ impl Args {
         })
     }
 
-    /// Writes the table of inlets and outlets.
-    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<(), Failure> {
+    /// Writes the table of inlets and outlets, which still has to be moved to its path.
+    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<AtomicFile, Failure> {
         let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
-        write_text(&self.table(), &text).map_err(|e| self.no_table(&e))
+        text_to_commit(&self.table(), &text).map_err(|e| self.no_table(&e))
     }
 
     /// Path of the table of inlets and outlets.

@@ -48,6 +48,9 @@ impl Flusher {
 
 impl AtomicFile {
     /// Creates a temporary file next to `target`.
+    ///
+    /// # Errors
+    /// The operating system reports an error.
     pub fn create(target: &Path) -> io::Result<Self> {
         if target.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
@@ -66,6 +69,9 @@ impl AtomicFile {
     }
 
     /// Flushes all buffers, so that a full disk can no longer make `commit` fail.
+    ///
+    /// # Errors
+    /// The operating system reports an error.
     pub fn complete(&mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -77,6 +83,9 @@ impl AtomicFile {
     }
 
     /// Flushes the file and moves it to its target, replacing an earlier file.
+    ///
+    /// # Errors
+    /// The operating system reports an error.
     pub fn commit(mut self) -> io::Result<()> {
         self.complete()?;
         // Windows cannot move an open file.
