@@ -21,7 +21,7 @@ struct Groups {
     /// Names of the regions.
     names: Vec<NamedRegion>,
     /// Physical groups of the regions.
-    groups: RegionGroups,
+    numbers: RegionGroups,
     /// Group of all tetrahedra, above all patches.
     lumen: i32,
 }
@@ -41,13 +41,13 @@ impl Groups {
                 Ok(())
             })?;
         }
-        let groups = RegionGroups::of(&notes.regions);
-        Ok(Self { regions, names: notes.regions.clone(), groups, lumen: largest.max(0).saturating_add(1) })
+        let numbers = RegionGroups::of(&notes.regions);
+        Ok(Self { regions, names: notes.regions.clone(), numbers, lumen: largest.max(0).saturating_add(1) })
     }
 
     /// Group of a tetrahedron; 0 (none) for regions that have no positive number and no name.
     fn of_tet(&self, block: i32) -> i32 {
-        if self.regions.is_empty() { self.lumen } else { self.groups.of_region(block).unwrap_or(0) }
+        if self.regions.is_empty() { self.lumen } else { self.numbers.of_region(block).unwrap_or(0) }
     }
 
     /// Groups of tetrahedra with their names.
@@ -55,7 +55,7 @@ impl Groups {
         if self.regions.is_empty() {
             return vec![(self.lumen, VOLUME_NAME.into())];
         }
-        let named = |&id: &i32| Some((self.groups.of_region(id)?, NamedRegion::name_of(&self.names, id)));
+        let named = |&id: &i32| Some((self.numbers.of_region(id)?, NamedRegion::name_of(&self.names, id)));
         self.regions.iter().filter_map(named).collect()
     }
 }
