@@ -23,7 +23,11 @@ pub fn verify(mesh: &Mesh, report: &mut Report, check: impl Fn(&Mesh) -> Report)
     for (id, name) in &mesh.regions {
         let part = part(mesh, &faces, *id, name == LUMEN);
         if !part.tets.is_empty() {
-            report.merge(check(&part), name);
+            let mut found = check(&part);
+            if mesh.expected_loops.is_none() {
+                found.allow_touching();
+            }
+            report.merge(found, name);
         }
     }
 }

@@ -143,7 +143,7 @@ impl Check<'_> {
         counts.components = cells::component_count(&adjacency);
         counts.volume = cells::volume(mesh);
         let volume = self.volume.filter(|_| !self.regions.is_empty());
-        let regions = volume.map(|volume| RegionCheck::of(volume, self.regions, &adjacency));
+        let mut regions = volume.map(|volume| RegionCheck::of(volume, self.regions, &adjacency));
         lines.push(match &regions {
             Some(regions) => regions.components(self.expectation),
             None => result::components(self.expectation, counts.components),
@@ -153,9 +153,11 @@ impl Check<'_> {
         let boundary = Boundary::new(&mesh.points, &faces);
         counts.boundary_faces = faces.len();
         counts.boundary_components = boundary.surfaces().all.len();
-        lines.extend(boundary.manifold_lines());
-        let open = [Line::BoundaryEdges, Line::BoundaryFans].into_iter().find(|&line| fails(&lines, line));
-        let (line, intersections) = boundary.self_intersections(!fails(&lines, Line::BoundaryEdges));
+        let manifold = boundary.manifold_lines();
+        let open = manifold.iter().find(|line| line.fails()).map(|line| line.line);
+        let (line, intersections) = boundary.self_intersections(!manifold[0].fails());
+        let is_complex = regions.is_some() && self.expectation.is_none();
+        lines.extend(manifold.map(|line| if is_complex { line.may_touch() } else { line }));
         lines.push(line);
         match &regions {
             Some(regions) => lines.push(regions.loops(self.expectation)),
@@ -166,7 +168,7 @@ impl Check<'_> {
             Some(regions) => lines.extend(regions.labels(&faces, self.expectation)),
             None => lines.extend(self.labels(&faces)),
         }
-        lines.extend(regions.iter().flat_map(|regions| regions.lines(self.expectation.is_some())));
+        lines.extend(regions.iter_mut().flat_map(|regions| regions.lines(self.expectation.is_some())));
         counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
         let sizes = regions.map_or_else(Vec::new, |regions| regions.counts());
         let report = CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections);
@@ -199,10 +201,6 @@ impl Check<'_> {
 
 fn first_failure(lines: &[LineResult]) -> Option<Line> {
     lines.iter().find(|result| result.outcome == Outcome::Fail).map(|result| result.line)
-}
-
-fn fails(lines: &[LineResult], line: Line) -> bool {
-    lines.iter().any(|result| result.line == line && result.outcome == Outcome::Fail)
 }
 
 fn boundary_of(mesh: &TetMesh, adjacency: &TetAdjacency) -> Vec<[u32; 3]> {

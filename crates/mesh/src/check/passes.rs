@@ -337,6 +337,7 @@ impl<'a> Passes<'a> {
                 tets: sum.tets,
                 components: self.components.get(&region.id).copied().unwrap_or(0),
                 boundary_faces: self.labelled.get(&region.id).map_or(0, |(_, count)| *count),
+                touches: 0,
                 volume: sum.volume,
             }
         };

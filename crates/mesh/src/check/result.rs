@@ -262,6 +262,8 @@ pub enum Skipped {
     NoLumen,
     /// No interface face is labelled.
     NoInterfaces,
+    /// A complex or its regions touch themselves, which is allowed.
+    MayTouch,
     /// Meaningless while this condition fails.
     Because(Line),
 }
@@ -357,6 +359,12 @@ impl LineResult {
     pub(super) fn skipped(line: Line, why: Skipped) -> Self {
         Self { outcome: Outcome::NotChecked(why), ..Tally::new(line).done() }
     }
+
+    /// A failed condition counts as not checked: a complex and its regions may touch themselves. Boundaries of tetrahedra are closed, so that
+    /// a manifold condition can only fail there.
+    pub(super) fn may_touch(self) -> Self {
+        if self.fails() { Self::skipped(self.line, Skipped::MayTouch) } else { self }
+    }
 }
 
 /// Collects the offenders of one condition.
@@ -446,6 +454,8 @@ pub struct RegionCounts {
     pub components: usize,
     /// Number of faces on its boundary.
     pub boundary_faces: usize,
+    /// Number of edges and vertices where its boundary touches itself.
+    pub touches: u64,
     /// Volume, in the cube of the mesh's unit.
     pub volume: f64,
 }

@@ -311,7 +311,7 @@ fn caps_that_are_no_discs() {
         v.boundary.iter().position(|f| {
             f.iter().all(|&i| {
                 let p = v.mesh.points[i as usize];
-                p.z > HEIGHT - 1e-9 && p.x.hypot(p.y) < 0.6
+                p.z > HEIGHT - 1e-9 && libm::hypot(p.x, p.y) < 0.6
             })
         })
     };

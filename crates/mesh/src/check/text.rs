@@ -37,7 +37,11 @@ pub fn sizes(check: &CheckReport) -> String {
 pub fn region_sizes(region: &RegionCounts) -> String {
     let (components, faces) =
         (counted(region.components, "component"), counted(region.boundary_faces, "boundary face"));
-    format!("{}, {components}, {faces}, volume {}", tetrahedra(region.tets), digits(region.volume))
+    let touches = match region.touches {
+        0 => String::new(),
+        n => format!(", touches itself at {}", counted(n as usize, "place")),
+    };
+    format!("{}, {components}, {faces}{touches}, volume {}", tetrahedra(region.tets), digits(region.volume))
 }
 
 /// Quality of the tetrahedra.
@@ -120,6 +124,7 @@ pub fn reason(why: Skipped) -> String {
         Skipped::NoCaps => "the labels do not identify the caps".into(),
         Skipped::NoLumen => "no region is named 'lumen'".into(),
         Skipped::NoInterfaces => "the file labels no interfaces".into(),
+        Skipped::MayTouch => "a complex and its regions may touch themselves, at edges and vertices".into(),
         Skipped::Because(line) => format!("the condition '{}' failed", line.statement()),
     }
 }

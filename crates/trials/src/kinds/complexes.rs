@@ -14,7 +14,7 @@ pub const KINDS: [(&str, MakeCase); 9] = [
     ("nested spheres", |r| written(spheres(r), Expect::Valid, r)),
     ("sphere halved by a disc", |r| written(halved(r), Expect::Valid, r)),
     ("region with a negative number", |r| written(negative(r), Expect::Valid, r)),
-    ("regions that touch themselves at edges", |r| written(touching(r), Expect::Any, r)),
+    ("regions that touch themselves at edges", |r| written(touching(r), Expect::Valid, r)),
     ("wedges around one edge", |r| written(wedges(r), Expect::Valid, r)),
     ("boxes in a box, some of them holes", |r| written(boxes(r), Expect::Valid, r)),
     ("box with dangling triangles", |r| written(dangling(r), Expect::Any, r)),
