@@ -76,6 +76,11 @@ const COSINE_GAIN: f64 = 1e-3;
 /// Edges beyond these multiples of the target length are split or collapsed.
 const SPLIT_ABOVE: f64 = 1.45;
 const COLLAPSE_BELOW: f64 = 0.62;
+/// Maximum number of edges of a vertex after a collapse. Without it, the time is quadratic where the grid is much finer than
+/// the edges. Flips between passes make room.
+const MOST_VALENCE: usize = 24;
+/// Maximum number of passes of collapses. Each one removes most vertices that are too many.
+const MOST_PASSES: usize = 16;
 /// Triangles with a minimum angle above 41° are not flipped for a better one.
 const GOOD_COSINE: f64 = 0.75;
 /// Items between two checks for cancellation and the budget, and operations per item.
@@ -332,11 +337,23 @@ impl<'a, L: Level> Relaxation<'a, L> {
         a == Hold::Free || b == Hold::Free || a != b
     }
 
+    /// Collapses short edges. On a grid much finer than the edges, this takes several passes.
     fn collapse_short(&mut self) {
+        for _ in 0..MOST_PASSES {
+            if !self.collapse_once() {
+                return;
+            }
+            self.flip(Criterion::Valence);
+        }
+    }
+
+    /// One pass of collapses. Returns true if some wait because the fan of their vertex is full.
+    fn collapse_once(&mut self) -> bool {
         let count = self.half_count();
+        let mut is_full = false;
         for i in 0..count {
             if self.must_stop(i as usize, count as usize) {
-                return;
+                return false;
             }
             let h = self.half(i);
             if !self.surface.is_live(h) || self.is_locked(self.surface.from(h)) {
@@ -351,13 +368,19 @@ impl<'a, L: Level> Relaxation<'a, L> {
             } else {
                 nalgebra::center(&self.surface.points[a as usize], &self.surface.points[b as usize])
             };
-            if self.surface.can_collapse(h) && self.collapse_is_sound(h, target) {
-                self.surface.collapse(h);
-                self.sizes[b as usize] = self.aim(a, b);
-                // The vertex is projected during smoothing.
-                self.surface.points[b as usize] = target;
+            if !self.surface.can_collapse(h) || !self.collapse_is_sound(h, target) {
+                continue;
             }
+            if self.surface.valence(a) + self.surface.valence(b) > MOST_VALENCE + 4 {
+                is_full = true;
+                continue;
+            }
+            self.surface.collapse(h);
+            self.sizes[b as usize] = self.aim(a, b);
+            // The vertex is projected during smoothing.
+            self.surface.points[b as usize] = target;
         }
+        is_full
     }
 
     fn is_on_disc(&self, v: u32) -> bool {
