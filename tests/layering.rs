@@ -151,6 +151,31 @@ fn the_second_checker_depends_on_no_crate_of_the_mesher() {
     assert!(names.contains(&"num-bigint") && shared.is_empty(), "dependencies on the mesher: {shared:?}");
 }
 
+/// Elementary functions of `std`. Their last digits are those of the platform's C library.
+const OF_PLATFORM: [&str; 20] = [
+    "acos", "asin", "atan", "atan2", "cbrt", "cos", "cosh", "exp", "exp2", "exp_m1", "hypot", "ln", "ln_1p", "log",
+    "log10", "log2", "powf", "sin", "sin_cos", "tan",
+];
+
+/// Calls of them as methods.
+fn calls_of_platform(source: &str) -> Vec<String> {
+    let code = source.lines().map(|line| line.split("//").next().unwrap_or(""));
+    let is_call = |code: &str| OF_PLATFORM.iter().any(|name| code.contains(&format!(".{name}(")));
+    code.filter(|code| is_call(code)).map(|code| code.trim().to_owned()).collect()
+}
+
+#[test]
+fn elementary_functions_are_the_same_on_all_platforms() {
+    let mesher = PACKAGES.iter().filter(|package| !["crates/verify/src", "crates/trials/src"].contains(package));
+    for package in mesher {
+        for (inside, source) in sources(package) {
+            let calls = calls_of_platform(&source);
+            assert!(calls.is_empty(), "{package}/{inside}: use libm instead of\n{}", calls.join("\n"));
+        }
+    }
+    assert_eq!(calls_of_platform("let x = y.sin(); // a.cos()\nlibm::exp(x)"), ["let x = y.sin();"]);
+}
+
 #[test]
 fn no_file_imports_from_one_that_imports_from_it() {
     let circles_in =

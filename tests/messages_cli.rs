@@ -10,6 +10,12 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
+/// A point with an edge length.
+const LENGTHS: &str = "<VTKFile type='UnstructuredGrid'><UnstructuredGrid><Piece NumberOfPoints='1' NumberOfCells='0'>\
+    <Points><DataArray type='Float64' NumberOfComponents='3' format='ascii'>0 0 0</DataArray></Points>\
+    <Cells></Cells><PointData><DataArray type='Float64' Name='edge' format='ascii'>0.1</DataArray></PointData>\
+    </Piece></UnstructuredGrid></VTKFile>";
+
 /// A bifurcation with a wide angle.
 const FORK: &str = "1 0 0 0 0 1 -1\n2 0 0 0 9 1 1\n3 0 0 6 16 0.8 2\n4 0 0 -6 16 0.8 2\n";
 /// This network with a number for each node, one of them invalid for edges.
@@ -87,6 +93,7 @@ fn without_numbers(line: &str) -> String {
 fn networks(record: &Record) {
     record
         .file("fork.swc", FORK)
+        .file("lengths.vtu", LENGTHS)
         .file("crossed.swc", CROSSED)
         .file("empty.swc", "")
         .file("words.swc", "It was the best of times.\n")
@@ -143,6 +150,12 @@ fn options_that_make_no_sense() {
         "mesh sized.csv -o out.vtu --size-at Length",
         "mesh sized.csv -o out.vtu --size-at Length --stretch 4",
         "surface sized.csv -o out.stl --size-at Size",
+        "mesh fork.swc -o out.vtu --sizes-from lengths.vtu",
+        "mesh fork.swc -o out.vtu --sizes-from nowhere.vtu --array edge",
+        "mesh fork.swc -o out.vtu --sizes-from fork.swc --array edge",
+        "mesh fork.swc -o out.vtu --sizes-from lengths.vtu --array edge --size-at 0.5",
+        "mesh fork.swc -o out.vtu --sizes-from lengths.vtu --array edge --follow 0",
+        "mesh fork.swc -o out.vtu --sizes-from lengths.vtu --array edge --joint none",
         "mesh fork.swc -o out.vtu --core 9",
         "mesh fork.swc -o out.vtu --follow -1",
         "mesh fork.swc -o out.vtu --layers 0",

@@ -224,7 +224,8 @@ fn cluster_surface(
     };
     let failed = |source| BlockError::of_wall(id, source);
     let stopped = |stop| stopped(id, stop);
-    let finer = Finer { forks: cluster.fine.clone(), ends: cluster.ends.iter().map(|end| end.section).collect() };
+    let cuts = cluster.ends.iter().filter(|end| matches!(end.kind, EndKind::Cut { .. }));
+    let finer = Finer::new(&cluster.fine, cuts.map(|end| end.section).collect());
     let make = |tubes: &[Tube]| vessel_wall(tubes, &surface_params, &finer, watch).map_err(failed);
     let count = |wall: &SizedWall| {
         let handles = 1 - euler_characteristic(&wall.mesh) / 2;

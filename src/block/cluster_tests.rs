@@ -7,7 +7,7 @@ use crate::surface::SharedDisc;
 use anastomesh_mesh::adjacency::boundary_faces;
 use anastomesh_mesh::face_key;
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
-use anastomesh_skeleton::{BranchId, Edge, FineFork, Node, NodeId, Skeleton};
+use anastomesh_skeleton::{BranchId, Edge, FinePlace, Node, NodeId, Skeleton};
 use rustc_hash::FxHashSet;
 
 fn meshed(seed: u64, params: &BlockParams) -> (Cluster, ClusterMesh) {
@@ -72,7 +72,7 @@ fn a_finer_fork_owes_its_neighbours_the_same_discs() {
         for layers in [None, Some(anastomesh_tet::Layers::default())] {
             let params = BlockParams { ends: EndStyle::Shared, layers, ..BlockParams::default() };
             let plain = bifurcation(seed);
-            let fork = FineFork { at: Point3::origin(), within: 1.2, factor };
+            let fork = FinePlace { at: Point3::origin(), within: 1.2, factor };
             let finer = Cluster { fine: vec![fork], ..plain.clone() };
             let [plain, finer] = [plain, finer].map(|cluster| {
                 let made = mesh_cluster(ClusterId(0), &cluster, &params).expect("a cluster");

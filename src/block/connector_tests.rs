@@ -18,7 +18,7 @@ fn fan(at: &Section, side: u8, n: usize, noise: f64, seed: u64) -> (EndSurface, 
         let a = step * (i as f64 + noise * jitter(seed, 4 * id));
         let r = at.radius * (1.0 + 0.1 * noise * jitter(seed, 4 * id + 1));
         let z = at.radius * step * noise * jitter(seed, 4 * id + 2);
-        points.push(at.origin + (u * a.cos() + w * a.sin()) * r + at.axis * z);
+        points.push(at.origin + (u * libm::cos(a) + w * libm::sin(a)) * r + at.axis * z);
     }
     let triangles = (0..n as u32).map(|i| [0, 1 + i, 1 + (i + 1) % n as u32]).collect();
     let surface = EndSurface { cut: CutId(0), side, section: *at, triangles, rim: (1..=n as u32).collect() };
@@ -71,8 +71,8 @@ fn bent_and_tapered_paths_are_followed() {
         let path: Vec<Section> = (0..=8)
             .map(|i| {
                 let a = turn * f64::from(i) / 8.0;
-                let o = Point3::new(bend * (1.0 - a.cos()), 0.0, bend * a.sin());
-                section(o, Vec3::new(a.sin(), 0.0, a.cos()), 1.0 - 0.03 * f64::from(i))
+                let o = Point3::new(bend * (1.0 - libm::cos(a)), 0.0, bend * libm::sin(a));
+                section(o, Vec3::new(libm::sin(a), 0.0, libm::cos(a)), 1.0 - 0.03 * f64::from(i))
             })
             .collect();
         let out = join(&path, [12, 10], 0.4, 7);

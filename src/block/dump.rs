@@ -5,7 +5,7 @@ use super::end_surface::StoredEnd;
 use super::params::BlockParams;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind};
 use anastomesh_mesh::geometry::{Point3, Section, Tube};
-use anastomesh_skeleton::{FineFork, LARGEST, LEAST_SIZE, NodeId};
+use anastomesh_skeleton::{FinePlace, LARGEST, LEAST_SIZE, NodeId};
 use serde::{Deserialize, Serialize};
 
 /// Format version; changes whenever the meaning or the names of the contents change.
@@ -196,11 +196,11 @@ fn check_cluster(cluster: &Cluster) -> Result<(), String> {
         check_radius(*ra)?;
         check_radius(*rb)?;
     }
-    for FineFork { at, within, factor } in &cluster.fine {
+    for FinePlace { at, within, factor } in &cluster.fine {
         check_point(at)?;
         check_radius(*within)?;
         if !(LEAST_SIZE..=1.0).contains(factor) {
-            return Err(format!("a fork has edges {factor} times as long"));
+            return Err(format!("a place has edges {factor} times as long"));
         }
     }
     for end in &cluster.ends {

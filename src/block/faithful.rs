@@ -225,7 +225,7 @@ mod tests {
     fn helix(pitch: f64) -> Cluster {
         let point = |i: i32| {
             let a = f64::from(i) * 0.2;
-            [2.0 * a.cos(), 2.0 * a.sin(), pitch * a / std::f64::consts::TAU]
+            [2.0 * libm::cos(a), 2.0 * libm::sin(a), pitch * a / std::f64::consts::TAU]
         };
         cluster(&(0..120).map(point).collect::<Vec<_>>())
     }

@@ -10,9 +10,10 @@ use anastomesh_mesh::geometry::{Section, Vec3};
 /// Maximum turn between consecutive tubes, in radians. Sharper bends are left to the field, which rounds them.
 const STRAIGHT: f64 = 0.35;
 
-/// Meshes a single-tube cluster by template. Returns `None` for other clusters or if no template fits.
+/// Meshes a single-tube cluster by template. Returns `None` for other clusters, for those with shorter edges, or if no
+/// template fits.
 pub(super) fn lone_tube(cluster: &Cluster, params: &BlockParams) -> Option<FilledTube> {
-    if params.ends != EndStyle::Shared || !params.by_template() {
+    if params.ends != EndStyle::Shared || !params.by_template() || !cluster.fine.is_empty() {
         return None;
     }
     let path = path(cluster)?;

@@ -104,7 +104,7 @@ mod tests {
     fn ring(radius: f64) -> Cluster {
         let at = |i: u32| {
             let angle = TAU * f64::from(i % 12) / 12.0;
-            Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+            Point3::new(radius * libm::cos(angle), radius * libm::sin(angle), 0.0)
         };
         let tube = |a, b| Tube { a, b, ra: 1.0, rb: 1.0 };
         let mut tubes: Vec<Tube> = (0..12).map(|i| tube(at(i), at(i + 1))).collect();

@@ -83,7 +83,7 @@ impl AxisPath {
     pub fn twist(&self) -> f64 {
         let last = &self.stations[self.stations.len() - 1];
         let (u, _) = Section { origin: last.origin, axis: last.axis, radius: last.radius }.frame();
-        u.dot(&last.axis.cross(&last.u)).atan2(u.dot(&last.u))
+        libm::atan2(u.dot(&last.axis.cross(&last.u)), u.dot(&last.u))
     }
 
     /// Position at arc length `s`; extrapolated straight beyond the ends.
@@ -106,14 +106,14 @@ impl AxisPath {
         let place = self.at(s0);
         let d = p - place.origin;
         let (x, y) = (d.dot(&place.u), d.dot(&place.w));
-        (s0 + d.dot(&place.axis), y.atan2(x), x.hypot(y))
+        (s0 + d.dot(&place.axis), libm::atan2(y, x), libm::hypot(x, y))
     }
 }
 
 impl AxisFrame {
     /// Point at an angle and a distance from the axis.
     pub fn point(&self, theta: f64, distance: f64) -> Point3 {
-        self.origin + (self.u * theta.cos() + self.w * theta.sin()) * distance
+        self.origin + (self.u * libm::cos(theta) + self.w * libm::sin(theta)) * distance
     }
 }
 
@@ -121,14 +121,14 @@ impl AxisFrame {
 fn radii_between(from: &Station, to: &Station) -> f64 {
     let (length, ratio) = (to.s - from.s, to.radius / from.radius);
     let x = ratio - 1.0;
-    let mean = if x.abs() < 1e-5 { 1.0 - x / 2.0 + x * x / 3.0 } else { ratio.ln() / x };
+    let mean = if x.abs() < 1e-5 { 1.0 - x / 2.0 + x * x / 3.0 } else { libm::log(ratio) / x };
     length / from.radius * mean
 }
 
 /// Fraction of the arc length between two radii that corresponds to a fraction of the length in radii.
 fn share(a: f64, b: f64, of_radii: f64) -> f64 {
     let ratio = b / a;
-    if (ratio - 1.0).abs() < 1e-5 { of_radii } else { (ratio.powf(of_radii) - 1.0) / (ratio - 1.0) }
+    if (ratio - 1.0).abs() < 1e-5 { of_radii } else { (libm::pow(ratio, of_radii) - 1.0) / (ratio - 1.0) }
 }
 
 /// Transports a frame vector to the next station by two reflections (Wang, Jüttler, Zheng, Liu 2008).

@@ -168,7 +168,7 @@ impl<'a> TubeWall<'a> {
         }
         mean /= 2.0 * star.len() as f64;
         let frame = self.path.at(place.s);
-        let (sine, cosine) = place.theta.sin_cos();
+        let (sine, cosine) = libm::sincos(place.theta);
         let tangent = frame.w * cosine - frame.u * sine;
         for share in [1.0, 0.5] {
             let next = RingVertex {

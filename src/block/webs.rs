@@ -283,7 +283,7 @@ mod tests {
     /// Two branches of radii 1 and 1.2 that leave a trunk at 7 degrees. The trunk comes from a direction in degrees.
     fn narrow_fork(direction: f64) -> Cluster {
         let tube = |angle: f64, length: f64, radius: f64| {
-            let (y, x) = (direction + angle).to_radians().sin_cos();
+            let (y, x) = libm::sincos((direction + angle).to_radians());
             Tube { a: Point3::origin(), b: Point3::new(length * x, length * y, 0.0), ra: radius, rb: radius }
         };
         Cluster {
@@ -314,7 +314,7 @@ mod tests {
         let mut with_handles = 0;
         for direction in (0..36).map(|i| 5.0 * f64::from(i)) {
             let place = |angle: f64, length: f64| {
-                let (y, x) = (direction + angle).to_radians().sin_cos();
+                let (y, x) = libm::sincos((direction + angle).to_radians());
                 Point3::new(length * x, length * y, 0.0)
             };
             let [apex, left, right] = [Point3::origin(), place(-5.0, 24.0), place(5.0, 24.0)];

@@ -8,9 +8,11 @@ use super::numbers::number;
 use crate::pipeline::{Estimate, MeshPlan, RunReport, TooLarge};
 use crate::report::advice::advice;
 use anastomesh_io::network::NetworkFile;
+use anastomesh_io::results::read_lengths;
 use anastomesh_skeleton::resolution::{FOLLOW, RHO};
-use anastomesh_skeleton::{BadSize, NodeSizes, SizeAt};
+use anastomesh_skeleton::{BadSize, NodeSizes, SizeAt, SizeField};
 use std::fmt;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Value of `--size-at`.
@@ -65,6 +67,12 @@ pub struct BlockArgs {
     /// bifurcations, values above 1 stretch tubes
     #[arg(long, value_name = "FACTOR|ARRAY", allow_negative_numbers = true)]
     pub size_at: Option<SizeArg>,
+    /// Edge lengths on an earlier mesh (`.vtu`). Edges are shorter where `--array` has less than the resolution gives
+    #[arg(long, value_name = "FILE", conflicts_with = "size_at", requires = "array")]
+    pub sizes_from: Option<PathBuf>,
+    /// Array of `--sizes-from`: an edge length for each point or each cell
+    #[arg(long, value_name = "NAME", requires = "sizes_from")]
+    pub array: Option<String>,
     /// Memory limit, such as 2GiB or 500MB (default: 2GiB)
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub memory: Option<u64>,
@@ -116,8 +124,11 @@ impl BlockArgs {
         }
     }
 
-    /// Reads the network, and puts its size array into the plan.
+    /// Reads the network and the requested edge lengths, which it puts into the plan.
     pub fn read(&self, network: &NetworkArgs, any_radii: bool, plan: &mut MeshPlan) -> Result<NetworkFile, Failure> {
+        if let (Some(path), Some(array)) = (&self.sizes_from, &self.array) {
+            plan.size_at = Some(SizeAt::Field(size_field(path, array)?));
+        }
         let Some(SizeArg::Array(array)) = &self.size_at else { return network.file(any_radii) };
         let options = network.options(any_radii).node_array(Some(array.clone()));
         let file = network.file_with(&options)?;
@@ -130,7 +141,10 @@ impl BlockArgs {
     pub fn typed(&self, is_refined: bool) -> String {
         let refine = self.refine.filter(|_| is_refined).map_or_else(String::new, |n| format!(" --refine {n}"));
         let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
-        let size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
+        let mut size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
+        if let (Some(path), Some(array)) = (&self.sizes_from, &self.array) {
+            size += &format!(" --sizes-from {} --array {array}", path.display());
+        }
         format!("--rho {} --follow {}{stretch}{size}{refine}", self.rho, self.follow)
     }
 }
@@ -144,4 +158,10 @@ fn sizes(array: &str, file: &NetworkFile) -> Result<SizeAt, Failure> {
         ))
     });
     sizes.map(SizeAt::Nodes)
+}
+
+/// Size field of an array on an earlier mesh.
+pub fn size_field(path: &Path, array: &str) -> Result<SizeField, Failure> {
+    let (points, lengths) = read_lengths(path, array).map_err(|e| Failure::input(e.to_string()))?;
+    SizeField::new(array, &points, &lengths).map_err(|e| Failure::input(format!("{}: {e}", path.display())))
 }

@@ -18,7 +18,7 @@ use anastomesh_mesh::TriMesh;
 use anastomesh_skeleton::NodeId;
 
 /// Options that need a lumen.
-const NOT_EMBEDDED: [&str; 29] = [
+const NOT_EMBEDDED: [&str; 30] = [
     "annulus",
     "as_is",
     "core",
@@ -41,6 +41,7 @@ const NOT_EMBEDDED: [&str; 29] = [
     "root",
     "shell",
     "size_at",
+    "sizes_from",
     "split_regions",
     "stretch",
     "tissue_ends",

@@ -7,11 +7,12 @@ const GROUPS: [(&str, &str); 4] =
     [("Preparation", "prepare"), ("Refinement", "refine"), ("Flow", ""), ("VTU and PVTU", "convert")];
 
 /// Options that only the long help lists.
-const RARE: [&str; 69] = [
+const RARE: [&str; 71] = [
     "allow-displaced",
     "allow-dropped",
     "angle-rate",
     "annulus",
+    "array",
     "barrier-rate",
     "certificate",
     "config",
@@ -62,6 +63,7 @@ const RARE: [&str; 69] = [
     "shard",
     "shell",
     "size-at",
+    "sizes-from",
     "smooth-noise",
     "split-regions",
     "stretch",

@@ -22,7 +22,7 @@ pub fn size(text: &str) -> Result<u64, String> {
         "tb" => return thousands(number, 4),
         _ => return Err("give a number and a unit, such as 2GiB, 500MiB or 4GB".into()),
     };
-    scaled(number, f64::from(power).exp2())
+    scaled(number, libm::exp2(f64::from(power)))
 }
 
 fn thousands(number: &str, power: i32) -> Result<u64, String> {

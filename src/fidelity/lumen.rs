@@ -85,7 +85,7 @@ impl Lumen<'_> {
             // Uniform along the axis and over each section; a sample has the weight of its section's area.
             let radius = tube.radius(x);
             let (r, angle) = (radius * y.sqrt(), TAU * z);
-            let point = tube.point(x) + u * (r * angle.cos()) + w * (r * angle.sin());
+            let point = tube.point(x) + u * (r * libm::cos(angle)) + w * (r * libm::sin(angle));
             sum += radius * radius / self.holders(&point, ra.max(rb), &mut seen);
         }
         PI * length * sum / count as f64
@@ -95,9 +95,9 @@ impl Lumen<'_> {
         let (center, radius) = (self.network.node(node).position, self.ball(node));
         let (mut sum, mut seen) = (0.0, Vec::new());
         for [x, y, z] in evenly(node.index(), count) {
-            let (r, height, angle) = (radius * x.cbrt(), 2.0 * y - 1.0, TAU * z);
+            let (r, height, angle) = (radius * libm::cbrt(x), 2.0 * y - 1.0, TAU * z);
             let across = (1.0 - height * height).sqrt();
-            let point = center + Vec3::new(across * angle.cos(), across * angle.sin(), height) * r;
+            let point = center + Vec3::new(across * libm::cos(angle), across * libm::sin(angle), height) * r;
             if !self.beyond(node, &point) {
                 sum += 1.0 / self.holders(&point, radius, &mut seen);
             }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::fine::of_branch;
 use super::params::Overruns;
 use super::parts::{
     BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, UncutReason,
@@ -17,7 +18,7 @@ use super::settle::{BranchSpan, Settler};
 use super::summary::{PartitionSummary, UncutCounts};
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_skeleton::course::{Course, Courses, Way};
-use anastomesh_skeleton::{BranchId, Chains, FineFork, Leg, NodeId, SizeAt, Skeleton};
+use anastomesh_skeleton::{BranchId, Chains, FinePlace, FineStation, Leg, NodeId, SizeAt, Skeleton};
 
 const NONE: u32 = u32::MAX;
 /// Length over which a vessel's direction at a bifurcation is measured, in radii of the node.
@@ -47,6 +48,9 @@ pub struct Layout {
     overruns: BTreeMap<(u32, u8), f64>,
     uncut: Vec<(BranchId, UncutReason)>,
     warnings: Vec<PartitionWarning>,
+    /// Places with shorter edges, by branch and arc length.
+    #[serde(default)]
+    fine: Vec<FineStation>,
 }
 
 /// Piece of a branch.
@@ -100,6 +104,7 @@ impl Layout {
             overruns: BTreeMap::new(),
             uncut,
             warnings,
+            fine: Vec::new(),
         };
         layout.place(&settler, &found.of_root, &cut_of_slot, &overruns);
         layout
@@ -142,9 +147,9 @@ impl Layout {
         self.first_piece.push(self.pieces.len() as u32);
     }
 
-    /// Sets the chains from which the layout was created.
-    pub(super) fn with(self, chains: Chains) -> Self {
-        Self { chains, ..self }
+    /// Sets the chains from which the layout was created, and the places with shorter edges.
+    pub(super) fn with(self, chains: Chains, fine: Vec<FineStation>) -> Self {
+        Self { chains, fine, ..self }
     }
 }
 
@@ -286,6 +291,11 @@ impl Layout {
         (0..self.cuts_len()).map(|i| self.cut(CutId(i as u32)))
     }
 
+    /// Places with shorter edges that a size field requests.
+    pub fn fine_stations(&self) -> &[FineStation] {
+        &self.fine
+    }
+
     /// Branches that lie in one cluster from end to end, with the reason.
     pub(super) fn uncut(&self) -> &[(BranchId, UncutReason)] {
         &self.uncut
@@ -378,6 +388,9 @@ impl Layout {
             let first = cluster.tubes.len() as u32;
             cluster.tubes.extend(course.tubes(arc[0], arc[1], flat));
             let tubes = first..cluster.tubes.len() as u32;
+            let within = |station: &&FineStation| arc[0] <= station.arc && station.arc <= arc[1];
+            let fine = of_branch(&self.fine, piece.branch).iter().filter(within);
+            cluster.fine.extend(fine.map(|station| station.place));
             each(BranchPiece { cluster: id, branch: BranchId(piece.branch), arc, tubes });
             if self.sizes.is_some() {
                 let ways = Way::BOTH.into_iter().enumerate().filter(|(end, _)| !flat[*end]);
@@ -396,7 +409,7 @@ impl Layout {
             }
         }
         cluster.size = cluster.size.filter(|_| self.pieces_in(id) == 1);
-        cluster.fine = self.fine(legs);
+        cluster.fine.extend(self.fine_forks(legs));
         cluster
     }
 
@@ -410,13 +423,13 @@ impl Layout {
     }
 
     /// Bifurcations of a cluster with shorter edges, from the vessels that leave each node.
-    fn fine(&self, mut legs: Vec<(NodeId, Leg)>) -> Vec<FineFork> {
+    fn fine_forks(&self, mut legs: Vec<(NodeId, Leg)>) -> Vec<FinePlace> {
         let Some(sizes) = &self.sizes else { return Vec::new() };
         legs.sort_by_key(|(node, _)| *node);
         let fork = |legs: &[(NodeId, Leg)]| {
             let node = self.skeleton.node(legs[0].0);
             let legs: Vec<Leg> = legs.iter().map(|(_, leg)| *leg).collect();
-            FineFork::new(node.position, &legs, sizes.at_fork(node.original))
+            FinePlace::of_fork(node.position, &legs, sizes.at_fork(node.original))
         };
         legs.chunk_by(|a, b| a.0 == b.0).filter_map(fork).collect()
     }

@@ -2,6 +2,7 @@
 
 mod check;
 mod clearance;
+mod fine;
 mod layout;
 mod near;
 mod params;
@@ -68,7 +69,8 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams, progress: &dyn Progre
     let adjacency = skeleton.adjacency();
     let chains = skeleton.chains(&adjacency);
     let courses = Courses { skeleton, chains: &chains };
-    let cutter = window::CutFinder::new(&adjacency, courses, params);
+    let fine = params.size_field.as_ref().map_or_else(Vec::new, |field| fine::stations(courses, field, params.rho));
+    let cutter = window::CutFinder::new(&adjacency, courses, params, &fine);
     let mut slots = Vec::with_capacity(courses.len());
     let mut uncut = Vec::new();
     for branch in 0..courses.len() as u32 {
@@ -87,5 +89,5 @@ fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams, progress: &dyn Progre
     let mut settler = settle::Settler::new(skeleton.nodes.len(), courses, params, slots, terminals);
     uncut.extend(settler.settle(progress)?);
     let layout = Layout::new(Arc::clone(skeleton), settler, uncut);
-    Ok(layout.with(chains))
+    Ok(layout.with(chains, fine))
 }

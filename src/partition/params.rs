@@ -3,7 +3,7 @@
 use anastomesh_skeleton::resolution::{KAPPA, RHO};
 use std::collections::{BTreeMap, BTreeSet};
 
-use anastomesh_skeleton::{BranchId, CutRules, EdgeId, NodeId, Skeleton};
+use anastomesh_skeleton::{BranchId, CutRules, EdgeId, NodeId, SizeField, Skeleton};
 
 /// Parameters of the partition. Lengths are in radii of the respective vessel unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,8 @@ pub struct PartitionParams {
     /// Shift of cut planes, as a fraction of the free space, in [−1, 1]. A positive value moves the plane at the
     /// branch's start towards its end. A negative value moves the plane at the end towards the start.
     pub shifted_cuts: BTreeMap<BranchId, f64>,
+    /// Requested edge lengths: no vessel is cut where they are shorter than the resolution's, as discs at cuts are not.
+    pub size_field: Option<SizeField>,
 }
 
 impl Default for PartitionParams {
@@ -63,6 +65,7 @@ impl Default for PartitionParams {
             forbidden_cuts: BTreeSet::new(),
             together: BTreeSet::new(),
             shifted_cuts: BTreeMap::new(),
+            size_field: None,
         }
     }
 }

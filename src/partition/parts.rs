@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::summary::PartitionSummary;
 use anastomesh_mesh::geometry::{Section, Tube};
-use anastomesh_skeleton::{BranchId, FineFork, NodeId};
+use anastomesh_skeleton::{BranchId, FinePlace, NodeId};
 
 /// Index of a cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -111,9 +111,9 @@ pub struct Cluster {
     pub tubes: Vec<Tube>,
     /// End planes of the cluster.
     pub ends: Vec<ClusterEnd>,
-    /// Bifurcations with shorter edges.
+    /// Places with shorter edges.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fine: Vec<FineFork>,
+    pub fine: Vec<FinePlace>,
     /// Requested edge size in the middle of a single-vessel cluster, relative to the edge length of the resolution.
     #[serde(skip)]
     pub size: Option<f64>,

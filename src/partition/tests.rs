@@ -103,7 +103,7 @@ fn length_decides() {
 
 /// Junction at the origin with a stem, an arm along x to another junction, and an arm at `degrees` to it.
 fn acute(degrees: f64, arm: f64) -> Skeleton {
-    let (sin, cos) = degrees.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
     skeleton(
         &[
             ([0.0; 3], 1.0),
@@ -215,7 +215,7 @@ fn loops_and_rings_are_cut() {
     // A ring without a junction, smooth and angular.
     for (n, radius) in [(40_u32, 8.0), (6, 10.0)] {
         let points: Vec<_> = (0..n)
-            .map(|i| (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos())
+            .map(|i| libm::sincos(f64::from(i) / f64::from(n) * std::f64::consts::TAU))
             .map(|(y, x)| ([radius * x, radius * y, 0.0], 1.0))
             .collect();
         let edges: Vec<_> = (0..n).map(|i| [i, (i + 1) % n]).collect();
@@ -256,7 +256,7 @@ fn wiggly(edges: u32, step: f64, bend: f64) -> Vec<[f64; 3]> {
     let noise = |i: u32| f64::from((i.wrapping_mul(2_654_435_761)) >> 24) / 256.0 - 0.5;
     (0..=edges)
         .map(|i| {
-            let (sin, cos) = (f64::from(i) * step / bend).sin_cos();
+            let (sin, cos) = libm::sincos(f64::from(i) * step / bend);
             let n = 0.1 * step;
             [bend * cos + n * noise(i), bend * sin + n * noise(i + 7), f64::from(i) * step * 0.5 + n * noise(i + 13)]
         })
@@ -270,7 +270,7 @@ fn polylines_of_tiny_edges_are_cut_along_their_course() {
     let path = &p.cuts[0].path;
     assert!(path.len() > 10);
     // Axes turn only slightly from section to section.
-    assert!(path.windows(2).all(|s| s[0].axis.dot(&s[1].axis) > 30_f64.to_radians().cos()));
+    assert!(path.windows(2).all(|s| s[0].axis.dot(&s[1].axis) > libm::cos(30_f64.to_radians())));
     // No cluster has a tube shorter than the edges.
     let tubes = p.clusters.iter().flat_map(|c| &c.tubes);
     assert!(tubes.map(Tube::length).fold(f64::INFINITY, f64::min) > 0.1);
@@ -445,7 +445,7 @@ fn rim_clearance(cluster: &Cluster, end: &ClusterEnd, own: &Range<u32>) -> f64 {
         let tube = &cluster.tubes[i as usize];
         for height in [-0.4 * r, 0.0, 0.5 * length, length] {
             for k in 0..12 {
-                let (sin, cos) = (f64::from(k) / 12.0 * std::f64::consts::TAU).sin_cos();
+                let (sin, cos) = libm::sincos(f64::from(k) / 12.0 * std::f64::consts::TAU);
                 let rim = end.section.origin + end.section.axis * height + (u * cos + w * sin) * r;
                 let (t, distance) = point_segment(&rim, &tube.a, &tube.b);
                 least = least.min(distance / tube.radius(t));

@@ -1,10 +1,11 @@
 //! Selection of cut positions within the feasible parts of a branch.
 
+use super::fine::of_branch;
 use super::params::PartitionParams;
 use super::parts::UncutReason;
 use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::cuttability::{BranchEnd, Cuttability, Uncuttable};
-use anastomesh_skeleton::{Adjacency, BranchId};
+use anastomesh_skeleton::{Adjacency, BranchId, FineStation};
 
 /// Candidate cut: the planes may lie anywhere in `window` that leaves space for the connector between them.
 #[derive(Clone, Copy, Debug)]
@@ -25,16 +26,23 @@ pub(super) struct CutFinder<'a> {
     adjacency: &'a Adjacency,
     usual: Cuttability<'a>,
     eager: Option<Cuttability<'a>>,
+    /// Places with shorter edges.
+    fine: &'a [FineStation],
 }
 
 /// Minimum piece length between two cuts of a branch, in radii.
 const SHORTEST_PIECE: f64 = 4.0;
 
 impl<'a> CutFinder<'a> {
-    pub fn new(adjacency: &'a Adjacency, courses: Courses<'a>, params: &'a PartitionParams) -> Self {
+    pub fn new(
+        adjacency: &'a Adjacency,
+        courses: Courses<'a>,
+        params: &'a PartitionParams,
+        fine: &'a [FineStation],
+    ) -> Self {
         let cuttability = |rules| Cuttability::new(adjacency, courses, rules);
         let eager = (!params.eager.is_empty()).then(|| cuttability(params.eager_cuts));
-        Self { courses, params, adjacency, usual: cuttability(params.cuts), eager }
+        Self { courses, params, adjacency, usual: cuttability(params.cuts), eager, fine }
     }
 
     /// Appends the cut positions of `branch`, or returns the reason why the branch has none.
@@ -55,9 +63,20 @@ impl<'a> CutFinder<'a> {
             Err(Uncuttable::Bend) => return Some(UncutReason::Bend),
         };
         let start = out.len();
-        self.choose(course, branch, window.reach, &window.straight, out);
+        self.choose(course, branch, window.reach, &self.coarse(branch, window.straight), out);
         out[start..].sort_by(|a, b| a.window[0].total_cmp(&b.window[0]));
         None
+    }
+
+    /// The pieces of `parts` in which edges have the length of the resolution.
+    fn coarse(&self, branch: u32, parts: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        let stations = of_branch(self.fine, branch);
+        if stations.is_empty() {
+            return parts;
+        }
+        let taken = |station: &FineStation| [station.arc - station.reach(), station.arc + station.reach()];
+        let taken = merged(stations.iter().map(taken).collect());
+        parts.into_iter().flat_map(|part| gaps(part, &taken)).collect()
     }
 
     fn terminal_wants_cut(&self, course: &Course) -> bool {
@@ -121,5 +140,46 @@ impl<'a> CutFinder<'a> {
         } else {
             window
         }
+    }
+}
+
+/// Union of intervals, in ascending order.
+fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    intervals.dedup_by(|next, last| {
+        let overlap = next[0] <= last[1];
+        if overlap {
+            last[1] = last[1].max(next[1]);
+        }
+        overlap
+    });
+    intervals
+}
+
+/// Parts of an interval outside of disjoint ones in ascending order.
+fn gaps([lo, hi]: [f64; 2], taken: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (mut free, mut from) = (Vec::new(), lo);
+    let first = taken.partition_point(|t| t[1] <= lo);
+    for &[start, end] in taken[first..].iter().take_while(|t| t[0] < hi) {
+        free.push([from, start]);
+        from = end;
+    }
+    free.push([from, hi]);
+    free.retain(|[lo, hi]| lo < hi);
+    free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_taken_out_of_parts() {
+        let taken = merged(vec![[5.0, 6.0], [1.0, 3.0], [2.0, 4.0], [2.0, 2.5], [9.0, 12.0]]);
+        assert_eq!(taken, [[1.0, 4.0], [5.0, 6.0], [9.0, 12.0]]);
+        assert_eq!(gaps([0.0, 10.0], &taken), [[0.0, 1.0], [4.0, 5.0], [6.0, 9.0]]);
+        assert_eq!(gaps([2.0, 3.0], &taken), [[0.0; 2]; 0]);
+        assert_eq!(gaps([6.0, 7.0], &taken), [[6.0, 7.0]]);
+        assert_eq!(gaps([3.0, 5.5], &taken), [[4.0, 5.0]]);
     }
 }

@@ -17,9 +17,9 @@ impl Direction {
     /// Direction from angles in degrees: around the z axis from −y, and above the xy plane.
     pub fn by_angles(azimuth: f64, elevation: f64) -> Self {
         let (a, e) = (azimuth.to_radians(), elevation.to_radians());
-        let towards = Vec3::new(e.cos() * a.sin(), -e.cos() * a.cos(), e.sin());
+        let towards = Vec3::new(libm::cos(e) * libm::sin(a), -libm::cos(e) * libm::cos(a), libm::sin(e));
         // Derivative by the elevation, defined also for a view from above.
-        let up = Vec3::new(-e.sin() * a.sin(), e.sin() * a.cos(), e.cos());
+        let up = Vec3::new(-libm::sin(e) * libm::sin(a), libm::sin(e) * libm::cos(a), libm::cos(e));
         Self::From { towards, up }
     }
 }

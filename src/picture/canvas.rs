@@ -146,7 +146,7 @@ impl Canvas {
         if !lined || strength <= 0.0 {
             return ([f64::INFINITY; 3], 0.0);
         }
-        let length = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]).max(1e-9);
+        let length = |a: [f64; 3], b: [f64; 3]| libm::hypot(a[0] - b[0], a[1] - b[1]).max(1e-9);
         let [a, b, c] = *corners;
         let over = |length: f64| area.abs() / length / self.factor as f64;
         ([over(length(b, c)), over(length(c, a)), over(length(a, b))], strength)

@@ -137,7 +137,7 @@ impl Legend {
         if value.is_nan() {
             return UNKNOWN;
         }
-        let place = |x: f64| if self.logarithmic { x.max(f64::MIN_POSITIVE).ln() } else { x };
+        let place = |x: f64| if self.logarithmic { libm::log(x.max(f64::MIN_POSITIVE)) } else { x };
         let (low, high) = (place(self.low), place(self.high));
         let share = if high > low { (place(value) - low) / (high - low) } else { 0.5 };
         // The extremes of the map contrast badly with the backgrounds.

@@ -123,7 +123,7 @@ fn cone(canvas: &mut Canvas, tube: &Tube, sides: usize, colours: [Rgb; 2]) {
     let lean = axis * ((tube.ra - tube.rb) / tube.length());
     let out = |i: usize| {
         let angle = TAU * i as f64 / sides as f64;
-        u * angle.cos() + w * angle.sin()
+        u * libm::cos(angle) + w * libm::sin(angle)
     };
     // Colours change along the vessel in visible steps.
     let steps =
@@ -146,7 +146,7 @@ fn ball(canvas: &mut Canvas, centre: &Point3, radius: f64, sides: usize, colour:
     let rings = (sides / 2).max(3);
     let out = |ring: usize, i: usize| {
         let (polar, angle) = (TAU * ring as f64 / (2 * rings) as f64, TAU * i as f64 / sides as f64);
-        Vec3::new(polar.sin() * angle.cos(), polar.sin() * angle.sin(), polar.cos())
+        Vec3::new(libm::sin(polar) * libm::cos(angle), libm::sin(polar) * libm::sin(angle), libm::cos(polar))
     };
     for ring in 0..rings {
         for i in 0..sides {

@@ -56,9 +56,9 @@ impl<'a> Light<'a> {
         let reach = REACH * canvas.camera.size.map(|n| n as f64).into_iter().fold(f64::INFINITY, f64::min);
         let look = |i: usize| {
             let (angle, share) = (i as f64 * GOLDEN_ANGLE, (i as f64 + 0.5) / LOOKS as f64);
-            [angle.cos() * share * reach, angle.sin() * share * reach]
+            [libm::cos(angle) * share * reach, libm::sin(angle) * share * reach]
         };
-        let linear = std::array::from_fn(|i| (i as f64 / 255.0).powf(2.2));
+        let linear = std::array::from_fn(|i| libm::pow(i as f64 / 255.0, 2.2));
         Self { canvas, background, depths, linear, looks: (0..LOOKS).map(look).collect(), reach }
     }
 
@@ -90,7 +90,7 @@ impl<'a> Light<'a> {
             (0..3).for_each(|c| sum[c] += ground[c] * (all - covered));
             covered = all;
         }
-        let screen = |x: f64| (255.0 * (x / covered.max(1e-9)).clamp(0.0, 1.0).powf(1.0 / 2.2)).round() as u8;
+        let screen = |x: f64| (255.0 * libm::pow((x / covered.max(1e-9)).clamp(0.0, 1.0), 1.0 / 2.2)).round() as u8;
         let [r, g, b] = sum.map(screen);
         [r, g, b, (255.0 * covered / all).round() as u8]
     }
@@ -125,7 +125,7 @@ impl<'a> Light<'a> {
         // The sampling pattern rotates between pixels in blocks of four by four, which avoids rings.
         let [column, row] = [x, y].map(|n| (n / self.canvas.factor) & 3);
         let turn = TAU * ((4 * column + row) * 7 % 16) as f64 / 16.0;
-        let (sin, cos) = turn.sin_cos();
+        let (sin, cos) = libm::sincos(turn);
         let mut hidden = 0.0;
         for &[u, v] in &self.looks {
             let [u, v] = [u * cos - v * sin, u * sin + v * cos];

@@ -10,7 +10,7 @@ use super::report::Retry;
 use super::tips::is_buried;
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, Layout, PartitionParams};
-use anastomesh_skeleton::{BranchId, Skeleton};
+use anastomesh_skeleton::{BranchId, SizeAt, Skeleton};
 
 /// Stage of the cure of a branch with a failed cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,7 @@ pub(super) fn partition_params(
         kappa: plan.block_params().kappa,
         together: together.clone(),
         cut_terminals: plan.joint == JointStyle::Disc,
+        size_field: plan.size_at.as_ref().and_then(SizeAt::field).cloned(),
         ..PartitionParams::default()
     };
     if plan.joint == JointStyle::None {

@@ -8,7 +8,7 @@ use crate::block::{BlockDump, BlockError, BlockInput, BlockParams};
 use crate::partition::{Cluster, ClusterId, Cut, Layout};
 use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells};
 use anastomesh_mesh::geometry::Tube;
-use anastomesh_skeleton::Skeleton;
+use anastomesh_skeleton::{SizeAt, Skeleton};
 
 /// Tetrahedra per unit of length over radius at ρ = 1, and the exponent of ρ. Fitted to meshes of the kidney's subtrees at
 /// ρ = 3, 4 and 5.
@@ -228,8 +228,10 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     }
     let thin = thinnest(cluster);
     let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
-    let finer: f64 = cluster.fine.iter().map(|fork| fork.factor.powf(-POWER_OF_FORK) - 1.0).sum();
-    let tets = plain.tets + TETS * plan.rho.powf(POWER) * FINE_RADII * finer;
+    let finer: f64 = cluster.fine.iter().map(|place| libm::pow(place.factor, -POWER_OF_FORK) - 1.0).sum();
+    // Adjacent places along a vessel are a radius apart.
+    let radii = if matches!(plan.size_at, Some(SizeAt::Field(_))) { 1.0 } else { FINE_RADII };
+    let tets = plain.tets + TETS * libm::pow(plan.rho, POWER) * radii * finer;
     let cost = Cost { wall: plain.wall, ..of_tets(tets) };
     let cells = cells(cluster, thin, plan);
     // An attempt with more cells fails before it makes a grid.
@@ -253,7 +255,7 @@ pub fn too_fine(id: ClusterId, cluster: &Cluster, plan: &MeshPlan) -> Option<Blo
 
 /// True for the end of a vessel, or a piece between two cuts.
 fn is_piece(cluster: &Cluster, plan: &MeshPlan) -> bool {
-    cluster.ends.len() == 2 && plan.joint == JointStyle::Disc
+    cluster.ends.len() == 2 && plan.joint == JointStyle::Disc && cluster.fine.is_empty()
 }
 
 fn thinnest(cluster: &Cluster) -> f64 {
@@ -291,7 +293,7 @@ pub fn connector_cost(cut: &Cut, plan: &MeshPlan) -> Cost {
 fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost {
     let radii: f64 = pieces.map(|(length, radius)| length / radius).sum();
     let layers = of_layers(radii, plan) / plan.stretch;
-    let per_radius = TETS_OF_TUBE * plan.rho.powf(POWER_OF_TUBE) * plan.core.powf(POWER_OF_CORE_OF_TUBE);
+    let per_radius = TETS_OF_TUBE * libm::pow(plan.rho, POWER_OF_TUBE) * libm::pow(plan.core, POWER_OF_CORE_OF_TUBE);
     Cost { wall: wall(radii, plan) / plan.stretch, ..of_tets(per_radius * radii / plan.stretch + layers) }
 }
 
@@ -299,9 +301,9 @@ fn tube_cost(pieces: impl Iterator<Item = (f64, f64)>, plan: &MeshPlan) -> Cost 
 fn cost(pieces: impl Iterator<Item = (f64, f64, f64)>, plan: &MeshPlan) -> Cost {
     // Without following the radius, a wide vessel has the short edges of the thinnest one.
     let finer = 3.0 * (1.0 - plan.follow);
-    let one = |(length, radius, thin): (f64, f64, f64)| length / radius * (radius / thin).powf(finer);
+    let one = |(length, radius, thin): (f64, f64, f64)| length / radius * libm::pow(radius / thin, finer);
     let radii = pieces.map(one).sum::<f64>();
-    let per_radius = TETS * plan.rho.powf(POWER) * plan.core.powf(POWER_OF_CORE);
+    let per_radius = TETS * libm::pow(plan.rho, POWER) * libm::pow(plan.core, POWER_OF_CORE);
     Cost { wall: wall(radii, plan), ..of_tets(per_radius * radii + of_layers(radii, plan)) }
 }
 

@@ -238,7 +238,7 @@ fn connector_key(cut: &Cut, plan: &MeshPlan, ends: &[StoredEnd]) -> Key {
 mod tests {
     use super::*;
     use crate::pipeline::plan::MOST_STRETCH;
-    use anastomesh_skeleton::{FineFork, SizeAt};
+    use anastomesh_skeleton::{FinePlace, SizeAt};
     use anastomesh_tet::Layers;
 
     #[test]
@@ -267,7 +267,7 @@ mod tests {
         let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
         assert_eq!(cluster_key(&cluster, &asked, true, RetryStrategy::Usual), plain);
         let forked = |factor| {
-            let fork = FineFork { at: anastomesh_mesh::geometry::Point3::origin(), within: 1.0, factor };
+            let fork = FinePlace { at: anastomesh_mesh::geometry::Point3::origin(), within: 1.0, factor };
             cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, RetryStrategy::Usual)
         };
         assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));

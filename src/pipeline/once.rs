@@ -78,7 +78,7 @@ pub fn replay(dump: &BlockDump, watch: &Watch) -> Result<Finished, BlockError> {
 mod tests {
     use super::*;
     use crate::block::fixtures::{bifurcation, facing};
-    use anastomesh_skeleton::FineFork;
+    use anastomesh_skeleton::FinePlace;
 
     #[test]
     fn a_dumped_block_runs_again_to_the_same_bits() {
@@ -94,7 +94,7 @@ mod tests {
             assert_eq!(read, dump);
             assert_eq!(replay(&read, &Watch::NOBODY).expect("runs again"), *made);
         };
-        let fork = FineFork { at: input.tubes[0].a, within: 1.2, factor: 0.5 };
+        let fork = FinePlace { at: input.tubes[0].a, within: 1.2, factor: 0.5 };
         let finer = Cluster { fine: vec![fork], ..input.clone() };
         let dump = BlockDump::of_cluster(ClusterId(0), &finer, params, vec![1, 2], |node| node.0);
         let made = whole(&finer, params.ends);

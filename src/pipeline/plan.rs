@@ -40,7 +40,7 @@ pub struct MeshPlan {
     pub follow: f64,
     /// Aspect ratio of tetrahedra along template tubes between bifurcations and caps.
     pub stretch: f64,
-    /// Factors on edge lengths at forks, and stretch of tubes from a node array.
+    /// Factors on edge lengths at forks and stretch of tubes from a node array, or edge lengths at points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_at: Option<SizeAt>,
     /// Ratio of edge lengths on the axis to those at the wall.
@@ -135,8 +135,11 @@ pub enum PlanError {
     #[error("size-at = {0} is out of range: give {LEAST_SIZE} (shortest edges at bifurcations) to 1 (no change)")]
     SizeAt(f64),
     /// Factors at forks need fixed discs, which only the joint style `Disc` has.
-    #[error("size-at needs the joint style disc")]
+    #[error("shorter edges (size-at, sizes-from) need the joint style disc")]
     SizeAtWoven,
+    /// Edge lengths at points are compared with those of edges that are proportional to the radius.
+    #[error("sizes-from needs follow = 1, and follow is {0}: omit it")]
+    FieldFollow(f64),
     /// Two options set the stretch of tubes.
     #[error("stretch = {stretch} and the size-at array '{array}' both set the stretch of tubes: omit one")]
     StretchTwice {
@@ -198,7 +201,8 @@ impl MeshPlan {
             SizeAt::Nodes(sizes) if self.stretch != 1.0 => {
                 Err(PlanError::StretchTwice { stretch: self.stretch, array: sizes.array().to_owned() })
             }
-            SizeAt::Forks(_) | SizeAt::Nodes(_) => Ok(()),
+            SizeAt::Field(_) if self.follow != 1.0 => Err(PlanError::FieldFollow(self.follow)),
+            SizeAt::Forks(_) | SizeAt::Nodes(_) | SizeAt::Field(_) => Ok(()),
         }
     }
 

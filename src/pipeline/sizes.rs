@@ -4,11 +4,18 @@ use super::plan::{MOST_STRETCH, MeshPlan};
 use crate::partition::Layout;
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::units::counted;
-use anastomesh_skeleton::{LEAST_SIZE, SizeAt, Skeleton};
+use anastomesh_skeleton::{EdgeId, FineStation, LEAST_SIZE, SizeAt, Skeleton};
+
+/// Share of the vessels with shorter edges above which a finer resolution is cheaper: no vessel is cut there.
+const MANY: f64 = 0.5;
 
 /// Reports the numbers of finer forks and stretched tubes, and of those that exceed the limits.
 pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan, observer: &dyn Progress) {
     let Some(sizes) = &plan.size_at else { return };
+    if let SizeAt::Field(field) = sizes {
+        let text = of_field(partition.fine_stations(), skeleton, plan.rho);
+        return observer.note(&format!("sizes-from {}: {text}", field.array()));
+    }
     let forks: Vec<f64> = partition.clusters().flat_map(|cluster| cluster.fine).map(|fork| fork.factor).collect();
     let mut parts = vec![match range(&forks) {
         Some(range) => format!("edge length at {} multiplied by {range}", counted(forks.len(), "fork")),
@@ -36,6 +43,29 @@ pub(super) fn announce(skeleton: &Skeleton, partition: &Layout, plan: &MeshPlan,
         }
     }
     observer.note(&format!("size-at: {}", parts.join("; ")));
+}
+
+/// Effect of a size field.
+fn of_field(stations: &[FineStation], skeleton: &Skeleton, rho: f64) -> String {
+    let factors: Vec<f64> = stations.iter().map(|station| station.place.factor).collect();
+    let Some(range) = range(&factors) else {
+        return format!("edges are at most as long as requested everywhere with rho {rho}");
+    };
+    let mut text = format!("edge length at {} multiplied by {range}", counted(stations.len(), "place"));
+    let below = stations.iter().filter(|station| station.asked < LEAST_SIZE).count();
+    if below > 0 {
+        text += &format!("; at {below} of them the field requests less: a larger --rho gives it");
+    }
+    // Places are a radius apart.
+    let tubes = (0..skeleton.edges.len() as u32).map(|edge| skeleton.tube(EdgeId(edge)));
+    let radii: f64 = tubes.map(|tube| 2.0 * tube.length() / (tube.ra + tube.rb)).sum();
+    if stations.len() as f64 > MANY * radii {
+        let mut asked: Vec<f64> = stations.iter().map(|station| station.asked).collect();
+        let middle = asked.len() / 2;
+        let (_, median, _) = asked.select_nth_unstable_by(middle, f64::total_cmp);
+        text += &format!("; most vessels need shorter edges, which --rho {:.1} gives at less cost", rho / *median);
+    }
+    text
 }
 
 /// Range of numbers as `0.5` or `0.3 to 0.9`; `None` without numbers.

@@ -66,7 +66,7 @@ impl BlockTimes {
             self.longest_seconds = seconds;
             self.longest = connector.map_or_else(|| format!("cluster {block}"), |k| format!("connector {k}"));
         }
-        let bin = (seconds.log2() + 11.0).clamp(0.0, 63.0) as usize;
+        let bin = (libm::log2(seconds) + 11.0).clamp(0.0, 63.0) as usize;
         self.histogram.resize(self.histogram.len().max(bin + 1), 0);
         self.histogram[bin] += 1;
     }

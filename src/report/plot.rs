@@ -64,7 +64,7 @@ struct Axis {
 impl Axis {
     fn new(values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let usable = values.filter(|v| v.is_finite() && (!logarithmic || *v > 0.0));
-        let value = |v: f64| if logarithmic { v.log10() } else { v };
+        let value = |v: f64| if logarithmic { libm::log10(v) } else { v };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for v in usable.map(value) {
             low = low.min(v);
@@ -92,7 +92,7 @@ impl Axis {
 
     /// Relative position of a value on the axis, from 0 to 1.
     fn place(&self, value: f64) -> Option<f64> {
-        let value = if self.logarithmic { value.log10() } else { value };
+        let value = if self.logarithmic { libm::log10(value) } else { value };
         value.is_finite().then(|| (value - self.low) / (self.high - self.low))
     }
 
@@ -119,7 +119,7 @@ fn superscript(number: &str) -> String {
 
 /// Smallest 1, 2 or 5 times a power of ten that is at least `x`.
 fn nice(x: f64) -> f64 {
-    let power = 10_f64.powf(x.log10().floor());
+    let power = libm::pow(10_f64, libm::log10(x).floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * power).find(|&s| s >= x * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 

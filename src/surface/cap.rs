@@ -10,12 +10,13 @@ use super::disc::{MEAN_EDGE, corners, disc};
 use super::halfedge::HalfEdges;
 use super::relax::{Hold, Level, Relaxation};
 use super::shared_disc::SharedDisc;
-use super::sizes::{Finer, GROWTH};
+use super::sizes::Finer;
 use super::{Field, SizedWall, SurfaceParams};
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Section, Vec3};
 use anastomesh_mesh::{Kept, TriMesh};
 use anastomesh_skeleton::NodeId;
+use anastomesh_skeleton::resolution::GROWTH;
 use anastomesh_tet::parts::Watch;
 use weave::weave;
 
@@ -462,12 +463,12 @@ fn phase(section: &Section, low: &[Point3], corners: u32) -> f64 {
     let (mut s, mut c) = (0.0, 0.0);
     for p in low {
         let d = p - section.origin;
-        let angle = m * d.dot(&w).atan2(d.dot(&u));
-        s += angle.sin();
-        c += angle.cos();
+        let angle = m * libm::atan2(d.dot(&w), d.dot(&u));
+        s += libm::sin(angle);
+        c += libm::cos(angle);
     }
     // Ring points lie between those of the loop.
-    (s.atan2(c) + std::f64::consts::PI) / m
+    (libm::atan2(s, c) + std::f64::consts::PI) / m
 }
 
 /// Level set shifted by the chord error of a polyhedron with this edge length. It does not constrain vertices beyond

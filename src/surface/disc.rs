@@ -21,7 +21,7 @@ pub(super) struct Disc {
 /// Circumradius of a regular polygon with the area of a circle.
 pub(crate) fn ring_radius(radius: f64, corners: u32) -> f64 {
     let t = TAU / f64::from(corners);
-    radius * (t / t.sin()).sqrt()
+    radius * (t / libm::sin(t)).sqrt()
 }
 
 /// Number of cached triangulations: rings with fewer corners share theirs.
@@ -40,7 +40,7 @@ pub(super) fn disc(radius: f64, corners: u32, phase: f64) -> Option<Disc> {
 impl Disc {
     /// Scales and rotates the disc.
     fn placed(&self, radius: f64, phase: f64) -> Self {
-        let (s, c) = phase.sin_cos();
+        let (s, c) = libm::sincos(phase);
         let (s, c) = (s * radius, c * radius);
         let points = self.points.iter().map(|&[x, y]| [c * x - s * y, s * x + c * y]).collect();
         Self { points, triangles: self.triangles.clone() }
@@ -50,7 +50,7 @@ impl Disc {
 /// Disc of radius 1 with its first corner at angle 0.
 fn unit_disc(corners: u32) -> Option<Disc> {
     let ring = ring_radius(1.0, corners);
-    let spacing = 2.0 * ring * (PI / f64::from(corners)).sin();
+    let spacing = 2.0 * ring * libm::sin(PI / f64::from(corners));
     let layers = (ring / (0.87 * spacing)).round().max(1.0) as u32;
     let mut points = circle(ring, corners, 0.0);
     for layer in (1..layers).rev() {
@@ -69,7 +69,7 @@ fn unit_disc(corners: u32) -> Option<Disc> {
 
 fn circle(radius: f64, count: u32, phase: f64) -> Vec<[f64; 2]> {
     let angle = |i: u32| phase + TAU * f64::from(i) / f64::from(count);
-    (0..count).map(|i| [radius * angle(i).cos(), radius * angle(i).sin()]).collect()
+    (0..count).map(|i| [radius * libm::cos(angle(i)), radius * libm::sin(angle(i))]).collect()
 }
 
 /// Constrained Delaunay triangulation. The constraints are the ring of the first `corners` points.
@@ -130,7 +130,7 @@ mod tests {
                     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
                     let cross: f64 = u[0] * v[1] - u[1] * v[0];
                     area += cross / 6.0;
-                    smallest = smallest.min(cross.atan2(u[0] * v[0] + u[1] * v[1]));
+                    smallest = smallest.min(libm::atan2(cross, u[0] * v[0] + u[1] * v[1]));
                 }
             }
             assert!((area - PI * 4.0).abs() < 1e-12 * area, "{corners}: area {area}");

@@ -90,7 +90,7 @@ impl Field {
         if !(kappa > 0.0 && kappa <= 2.0) {
             return Err(SurfaceError::InvalidParameter { name: "kappa", value: kappa });
         }
-        let cutoff2 = 1.0 - 2.0 * kappa * kappa * NEGLIGIBLE.ln();
+        let cutoff2 = 1.0 - 2.0 * kappa * kappa * libm::log(NEGLIGIBLE);
         for (i, t) in tubes.iter().enumerate() {
             let finite = t.a.iter().chain(t.b.iter()).all(|x| x.is_finite()) && t.ra.is_finite() && t.rb.is_finite();
             if !finite || t.ra <= 0.0 || t.rb <= 0.0 {
@@ -202,7 +202,7 @@ impl Field {
         } else if sum <= 0.0 {
             self.far
         } else {
-            (-2.0 * self.kappa * self.kappa * sum.ln()).sqrt().min(self.far)
+            (-2.0 * self.kappa * self.kappa * libm::log(sum)).sqrt().min(self.far)
         }
     }
 }
@@ -320,7 +320,7 @@ impl TaperedSegment {
     fn value(&self, p: &Point3, kappa: f64, cutoff2: f64, table: &Table) -> f64 {
         let Some((_, s, d2, r)) = self.locate(p, cutoff2) else { return 0.0 };
         let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
-        let value = (-d2 * q * q).exp() * 0.5 * (table.erf((self.length - s) * q) + table.erf(s * q));
+        let value = libm::exp(-d2 * q * q) * 0.5 * (table.erf((self.length - s) * q) + table.erf(s * q));
         self.weight(s).0 * value
     }
 
@@ -330,7 +330,7 @@ impl TaperedSegment {
         let q = std::f64::consts::FRAC_1_SQRT_2 / (kappa * r);
         // Relative change of σ along the axis; zero beyond the ends, where the radius is constant.
         let growth = if s > 0.0 && s < self.length { self.slope / r } else { 0.0 };
-        let across = (-d2 * q * q).exp();
+        let across = libm::exp(-d2 * q * q);
         let (e1, m1) = table.erf_and_slope((self.length - s) * q);
         let (e0, m0) = table.erf_and_slope(s * q);
         let along = 0.5 * (e1 + e0);
@@ -348,7 +348,7 @@ impl TaperedSegment {
         let w = p - self.a;
         let s = w.dot(&self.axis).clamp(0.0, self.length);
         let (d2, r) = ((w - self.axis * s).norm_squared(), self.ra + self.slope * s);
-        if d2 < cutoff2 * r * r { ((-0.5 * d2 / (kappa * kappa * r * r)).exp(), r) } else { (0.0, r) }
+        if d2 < cutoff2 * r * r { (libm::exp(-0.5 * d2 / (kappa * kappa * r * r)), r) } else { (0.0, r) }
     }
 
     /// Distance of `p` from the axis segment.

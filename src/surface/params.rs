@@ -48,7 +48,7 @@ impl SurfaceParams {
 
     /// Target edge length on a vessel of this radius.
     pub fn edge_at(&self, radius: f64) -> f64 {
-        let wider = (radius / self.thin).max(1.0).powf(self.follow);
+        let wider = libm::pow((radius / self.thin).max(1.0), self.follow);
         self.edge * self.voxel * (COARSENED * wider).max(1.0)
     }
 }

@@ -3,61 +3,74 @@
 use super::SurfaceParams;
 use super::field::Field;
 use super::halfedge::HalfEdges;
-use anastomesh_mesh::geometry::{Point3, Section, Total};
-use anastomesh_skeleton::FineFork;
+use anastomesh_mesh::geometry::{Aabb, Bvh, Point3, Section, Total};
+use anastomesh_skeleton::FinePlace;
+use anastomesh_skeleton::resolution::GROWTH;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Maximum growth of the target edge length per unit of distance: edges that share a vertex differ by a fifth.
-pub(crate) const GROWTH: f64 = 0.25;
-
-/// Local refinement of edges at bifurcations. Edges grow from there and reach the usual length at the ends, which other
-/// blocks share.
+/// Local refinement of edges. Edges grow from there and reach the usual length at the cuts, which other blocks share.
 #[derive(Clone, Debug, Default)]
 pub struct Finer {
-    /// The refined bifurcations.
-    pub forks: Vec<FineFork>,
-    /// The ends of the block.
-    pub ends: Vec<Section>,
+    /// The refined places.
+    places: Vec<FinePlace>,
+    /// Search tree over them; `None` without places.
+    tree: Option<Bvh>,
+    /// The cuts at its ends.
+    cuts: Vec<Section>,
+    /// The smallest factor.
+    least: f64,
 }
 
 impl Finer {
+    /// Edges are shorter at `places`, in a block with these cuts.
+    pub fn new(places: &[FinePlace], cuts: Vec<Section>) -> Self {
+        let boxes: Vec<Aabb> = places.iter().map(|place| Aabb::of_points([&place.at]).grown(place.within)).collect();
+        let tree = (!places.is_empty()).then(|| Bvh::of(boxes));
+        let least = places.iter().map(|place| place.factor).fold(1.0, f64::min);
+        Self { places: places.to_vec(), tree, cuts, least }
+    }
+
     /// Number of additional relaxation rounds. Each round halves edges once.
     pub(super) fn rounds(&self) -> u32 {
-        let least = self.forks.iter().map(|fork| fork.factor).fold(1.0, f64::min);
-        (1.0 / least).log2().ceil() as u32
+        if self.tree.is_some() { libm::log2(1.0 / self.least).ceil() as u32 } else { 0 }
     }
 
     /// Factor on the target edge length `size` at a point of the wall.
     pub(super) fn factor(&self, p: &Point3, size: f64) -> f64 {
-        if self.forks.is_empty() {
-            return 1.0;
-        }
-        let to_end = self.ends.iter().map(|end| distance(end, p)).fold(f64::INFINITY, f64::min);
-        let at = |fork: &FineFork| {
-            let from_fork = ((p - fork.at).norm() - fork.within).max(0.0);
-            if from_fork == 0.0 {
-                return fork.factor;
-            }
-            // Growth as elsewhere, or faster where an end is near.
-            let share = from_fork / (from_fork + to_end);
-            fork.factor + (GROWTH * from_fork / size).max((1.0 - fork.factor) * share)
-        };
-        self.forks.iter().map(at).fold(1.0, f64::min)
+        let (Some(tree), mut factor) = (&self.tree, 1.0_f64) else { return 1.0 };
+        let to_cut = self.cuts.iter().map(|cut| distance(cut, p)).fold(f64::INFINITY, f64::min);
+        // Further away edges have grown to the usual length.
+        let reach = (1.0 - self.least) * size / GROWTH;
+        tree.query(&Aabb::of_points([p]).grown(reach), |i| {
+            factor = factor.min(grown(&self.places[i as usize], p, size, to_cut));
+        });
+        factor
     }
 }
 
-/// Distance of a point from the disc of an end.
-fn distance(end: &Section, p: &Point3) -> f64 {
-    let height = end.height(p);
-    let across = (p - end.origin - end.axis * height).norm();
-    height.hypot((across - end.radius).max(0.0))
+/// Factor at a point at the distance `to_cut` from the nearest cut, as one place asks.
+fn grown(place: &FinePlace, p: &Point3, size: f64, to_cut: f64) -> f64 {
+    let away = ((p - place.at).norm() - place.within).max(0.0);
+    if away == 0.0 {
+        return place.factor;
+    }
+    // Growth as elsewhere, or faster where a cut is near.
+    let share = away / (away + to_cut);
+    place.factor + (GROWTH * away / size).max((1.0 - place.factor) * share)
+}
+
+/// Distance of a point from the disc of a cut.
+fn distance(cut: &Section, p: &Point3) -> f64 {
+    let height = cut.height(p);
+    let across = (p - cut.origin - cut.axis * height).norm();
+    libm::hypot(height, (across - cut.radius).max(0.0))
 }
 
 /// Target edge length at each vertex of a surface near the wall.
 pub(super) fn wall_sizes(surface: &HalfEdges, field: &mut Field, params: &SurfaceParams, finer: &Finer) -> Vec<f64> {
     let mut sizes = graded(surface, field, params);
-    if !finer.forks.is_empty() {
+    if finer.tree.is_some() {
         sizes.iter_mut().zip(&surface.points).for_each(|(size, p)| *size *= finer.factor(p, *size));
     }
     sizes

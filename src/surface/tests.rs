@@ -4,7 +4,7 @@ use super::halfedge::HalfEdges;
 use super::*;
 use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::{Section, Tube};
-use anastomesh_skeleton::FineFork;
+use anastomesh_skeleton::FinePlace;
 use proptest::prelude::*;
 
 fn tube(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64) -> Tube {
@@ -112,7 +112,7 @@ fn smallest_angle(mesh: &TriMesh) -> f64 {
         let [a, b, c] = t.map(|v| mesh.points[v as usize]);
         relax::largest_cosine(&a, &b, &c)
     };
-    mesh.triangles.iter().map(cosine).fold(0.0, f64::max).acos().to_degrees()
+    libm::acos(mesh.triangles.iter().map(cosine).fold(0.0, f64::max)).to_degrees()
 }
 
 fn check_wall(mesh: &TriMesh) {
@@ -179,7 +179,7 @@ fn gradients_are_those_of_the_values() {
     let mut field = Field::new(&tubes, 0.4).unwrap();
     for i in 0..60 {
         let t = f64::from(i) / 59.0;
-        let p = tubes[0].point(1.2 * t - 0.05) + Vec3::new(0.1, 0.7 * (9.0 * t).sin(), 0.8 * (9.0 * t).cos());
+        let p = tubes[0].point(1.2 * t - 0.05) + Vec3::new(0.1, 0.7 * libm::sin(9.0 * t), 0.8 * libm::cos(9.0 * t));
         let (value, gradient) = field.value_and_gradient(&p);
         if value > 0.3 && value < 1.5 {
             let h = 1e-4;
@@ -222,7 +222,7 @@ fn gradients_in_a_star_are_those_of_the_values() {
     let mut field = Field::new(&star(), 0.33).unwrap();
     for i in 0..60 {
         let t = f64::from(i);
-        let p = Point3::new((0.7 * t).sin(), (1.1 * t).cos(), (0.3 * t).sin()) * (4.0 + 0.07 * t);
+        let p = Point3::new(libm::sin(0.7 * t), libm::cos(1.1 * t), libm::sin(0.3 * t)) * (4.0 + 0.07 * t);
         let (value, gradient) = field.value_and_gradient(&p);
         if value > 0.3 && value < 1.5 {
             let h = 1e-4;
@@ -266,7 +266,7 @@ fn what_cannot_be_made_is_refused() {
 fn direction() -> impl Strategy<Value = Vec3> {
     (-1.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(z, a)| {
         let r = (1.0 - z * z).sqrt();
-        Vec3::new(r * a.cos(), r * a.sin(), z)
+        Vec3::new(r * libm::cos(a), r * libm::sin(a), z)
     })
 }
 
@@ -324,8 +324,8 @@ fn edges_at_forks_are_as_short_as_asked_and_on_the_same_wall() {
     let params = SurfaceParams { thin: 1.0, follow: 1.0, ..SurfaceParams::with_voxel(2.0 / 3.0) };
     let mut field = Field::new(&tubes, params.kappa).unwrap();
     let walls = [1.0, 0.5, 0.25].map(|factor| {
-        let fork = FineFork { at: Point3::origin(), within: 1.3, factor };
-        let finer = Finer { forks: vec![fork], ends: ends.clone() };
+        let fork = FinePlace { at: Point3::origin(), within: 1.3, factor };
+        let finer = Finer::new(&[fork], ends.clone());
         let wall = vessel_wall(&tubes, &params, &finer, &Watch::NOBODY).unwrap();
         check_wall(&wall.mesh);
         let all = edges(&wall.mesh);

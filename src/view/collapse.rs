@@ -241,7 +241,7 @@ mod tests {
         let at = |i: u32, j: u32| j * sides + i % sides;
         let point = |n: u32| {
             let angle = TAU * f64::from(n % sides) / f64::from(sides);
-            Point3::new(angle.cos(), angle.sin(), 0.4 * f64::from(n / sides))
+            Point3::new(libm::cos(angle), libm::sin(angle), 0.4 * f64::from(n / sides))
         };
         let quad = |(i, j): (u32, u32)| {
             [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]]
@@ -260,7 +260,7 @@ mod tests {
         // Both rings are intact, and all points are near the cylinder.
         let rings = rings(&triangles);
         assert_eq!(rings.iter().map(Vec::len).collect::<Vec<_>>(), [12, 12]);
-        let off = |p: &Point3| (p.x.hypot(p.y) - 1.0).abs();
+        let off = |p: &Point3| (libm::hypot(p.x, p.y) - 1.0).abs();
         assert!(points.iter().map(off).fold(0.0, f64::max) < 0.2);
     }
 }

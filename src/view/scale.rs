@@ -19,7 +19,7 @@ impl Scale {
             return 0;
         }
         let (above, range) =
-            if logarithmic { ((value / low).ln(), (high / low).ln()) } else { (value - low, high - low) };
+            if logarithmic { (libm::log(value / low), libm::log(high / low)) } else { (value - low, high - low) };
         1 + if range > 0.0 { (most * above / range).clamp(0.0, most) as i32 } else { (most / 2.0) as i32 }
     }
 }

@@ -59,7 +59,7 @@ mod tests {
     fn ends(corners: [u32; 2], bend: f64) -> (Vec<Point3>, [Vec<u32>; 2]) {
         let ring = |count: u32, z: f64, x: f64| {
             (0..count).map(move |i| {
-                let (sin, cos) = (TAU * f64::from(i) / f64::from(count)).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(count));
                 Point3::new(x + cos, sin, z)
             })
         };

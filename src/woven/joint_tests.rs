@@ -22,7 +22,7 @@ fn tube(z0: f64) -> TriMesh {
     let mut points = Vec::new();
     for layer in 0..=LAYERS {
         for i in 0..SIDES {
-            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(SIDES)).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / f64::from(SIDES));
             points.push(Point3::new(cos, sin, z0 + f64::from(layer) * STEP));
         }
     }
@@ -38,7 +38,7 @@ fn tube(z0: f64) -> TriMesh {
         let z = points[first as usize].z;
         let inner = points.len() as u32;
         for i in 0..SIDES / 2 {
-            let (sin, cos) = (std::f64::consts::TAU * (f64::from(i) + 0.25) / f64::from(SIDES / 2)).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * (f64::from(i) + 0.25) / f64::from(SIDES / 2));
             points.push(Point3::new(0.5 * cos, 0.5 * sin, z));
         }
         let middle = points.len() as u32;
@@ -53,7 +53,7 @@ fn tube(z0: f64) -> TriMesh {
     }
     for p in &mut points {
         if p.z.abs() < 1e-9 {
-            p.z = 0.3 * (7.0 * p.x).sin() * (5.0 * p.y + 1.0).cos();
+            p.z = 0.3 * libm::sin(7.0 * p.x) * libm::cos(5.0 * p.y + 1.0);
         }
     }
     TriMesh { points, triangles }

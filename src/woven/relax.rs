@@ -55,7 +55,7 @@ impl EndRelaxation<'_> {
         let polar = |p: Point3| {
             let d = p - self.section.origin;
             let (x, y) = (d.dot(&u), d.dot(&w));
-            (y.atan2(x), x.hypot(y), d.dot(&self.section.axis))
+            (libm::atan2(y, x), libm::hypot(x, y), d.dot(&self.section.axis))
         };
         let n = rim.len();
         let level = rim.iter().map(|&v| polar(self.at(points, v)).2).sum::<f64>() / n as f64;
@@ -71,7 +71,7 @@ impl EndRelaxation<'_> {
             let r = radius + share * (toward - radius);
             let a = theta + share * gap;
             let h = height + 0.5 * (level - height);
-            let target = self.section.origin + (u * a.cos() + w * a.sin()) * r + self.section.axis * h;
+            let target = self.section.origin + (u * libm::cos(a) + w * libm::sin(a)) * r + self.section.axis * h;
             self.step(points, rim[i], target);
         }
     }

@@ -40,7 +40,7 @@ pub fn hull(spheres: &[Sphere], margin: f64, side: f64, watch: &Watch) -> Result
     let body = Body::new(&ways, &extremes, margin);
     let extent = Aabb::of_points(extremes.iter().map(|(p, _)| p)).diagonal();
     // An edge of level n is about 1.1 / 2^n radii long.
-    let level = (1.1 * extent / margin).log2().ceil().clamp(LEVELS[0] as f64, LEVELS[1] as f64) as usize;
+    let level = libm::log2(1.1 * extent / margin).ceil().clamp(LEVELS[0] as f64, LEVELS[1] as f64) as usize;
     let mut surface = sphere_surface(level);
     surface.points.par_iter_mut().for_each(|p| *p = body.exit(&p.coords));
     watch.ask()?;

@@ -402,7 +402,7 @@ fn node_pressures(network: &Skeleton, spots: &[Spot], result: &FlowResult, scale
     for ((spot, pressure), volume) in spots.iter().zip(&result.pressures).zip(&result.volumes) {
         let (length, p) = (network.length(spot.edge) / (KERNEL * spot.radius), scale * pressure);
         for (sums, x) in sums[spot.edge.index()].iter_mut().zip([length * spot.t, length * (1.0 - spot.t)]) {
-            let weight = volume * (-0.5 * x * x).exp();
+            let weight = volume * libm::exp(-0.5 * x * x);
             for (sum, term) in sums.iter_mut().zip([1.0, x, x * x, p, x * p]) {
                 *sum += weight * term;
             }

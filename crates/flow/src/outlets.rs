@@ -229,7 +229,7 @@ impl<'a> OutletCase<'a> {
         open: &NetworkFlow,
     ) -> BTreeMap<NodeId, f64> {
         if let OutletSplit::Murray { exponent } = split {
-            let weight = |(node, radius): (NodeId, f64)| (node, radius.powf(-exponent));
+            let weight = |(node, radius): (NodeId, f64)| (node, libm::pow(radius, -exponent));
             return radii(self.network, outlets).into_iter().map(weight).collect();
         }
         let inflow = self.inflow();

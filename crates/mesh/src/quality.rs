@@ -79,7 +79,7 @@ pub fn triangle_ratio(p: &[Point3; 3]) -> f64 {
 
 /// The six dihedral angles in radians, in the order of `TET_EDGES`; each in [0, π].
 pub fn dihedral_angles(corners: [&Point3; 4]) -> [f64; 6] {
-    dihedral_sides(corners).map(|[opposite, adjacent]| opposite.atan2(adjacent))
+    dihedral_sides(corners).map(|[opposite, adjacent]| libm::atan2(opposite, adjacent))
 }
 
 /// Opposite and adjacent sides of right triangles with the dihedral angles, in the order of `TET_EDGES`.
@@ -167,7 +167,7 @@ impl CotangentRange {
 
     /// Smallest and largest angle.
     fn angles(self) -> (f64, f64) {
-        (1.0_f64.atan2(self.high), 1.0_f64.atan2(self.low))
+        (libm::atan2(1.0_f64, self.high), libm::atan2(1.0_f64, self.low))
     }
 }
 
@@ -181,7 +181,7 @@ pub fn triangle_area_vector(a: &Point3, b: &Point3, c: &Point3) -> Vec3 {
 pub fn triangle_min_angle(a: &Point3, b: &Point3, c: &Point3) -> f64 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let area = ab.cross(&ca).norm();
-    let corner = |u: &Vec3, v: &Vec3| area.atan2(-u.dot(v));
+    let corner = |u: &Vec3, v: &Vec3| libm::atan2(area, -u.dot(v));
     corner(&ab, &ca).min(corner(&bc, &ab)).min(corner(&ca, &bc))
 }
 
@@ -328,7 +328,7 @@ impl QualityPiece {
 
     /// Smallest dihedral angle in degrees.
     pub fn least_dihedral(&self) -> f64 {
-        1.0_f64.atan2(self.cotangents[1]).to_degrees()
+        libm::atan2(1.0_f64, self.cotangents[1]).to_degrees()
     }
 }
 
@@ -399,7 +399,7 @@ mod tests {
         let [a, b, c, d] = regular();
         let sign = volume6(&a, &b, &c, &d).signum();
         assert!((radius_ratio(&a, &b, &c, &d) - sign).abs() < 1e-14);
-        let expected = (1.0_f64 / 3.0).acos();
+        let expected = libm::acos(1.0_f64 / 3.0);
         for angle in dihedral_angles([&a, &b, &c, &d]) {
             assert!((angle - expected).abs() < 1e-14);
         }
@@ -413,7 +413,7 @@ mod tests {
         let expected = 3.0 * r / (3.0_f64.sqrt() / 2.0);
         assert!((radius_ratio(&a, &b, &c, &d) - expected).abs() < 1e-14);
         let (lo, hi) = dihedral_range([&a, &b, &c, &d]);
-        assert!((lo - (1.0 / 3.0_f64.sqrt()).acos()).abs() < 1e-14);
+        assert!((lo - libm::acos(1.0 / 3.0_f64.sqrt())).abs() < 1e-14);
         assert!((hi - std::f64::consts::FRAC_PI_2).abs() < 1e-14);
     }
 

@@ -464,8 +464,8 @@ mod tests {
         for i in 0..8 {
             let (a, h) = (f64::from(i) / 8.0 * std::f64::consts::TAU, f64::from(i) / 8.0 * std::f64::consts::PI);
             for side in [-0.3, 0.3] {
-                let r = 1.0 + side * h.cos();
-                s.points.push(Point3::new(r * a.cos(), r * a.sin(), side * h.sin()));
+                let r = 1.0 + side * libm::cos(h);
+                s.points.push(Point3::new(r * libm::cos(a), r * libm::sin(a), side * libm::sin(h)));
             }
         }
         for i in 0..8_u32 {

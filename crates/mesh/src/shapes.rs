@@ -92,9 +92,9 @@ pub fn banded_sphere(rings: u32) -> TriMesh {
     let mut mesh = TriMesh::default();
     let angle = |part: u32, of: u32| std::f64::consts::PI * f64::from(part) / f64::from(of);
     for ring in 1..rings {
-        let (sin, cos) = angle(ring, rings).sin_cos();
+        let (sin, cos) = libm::sincos(angle(ring, rings));
         for i in 0..around {
-            let (y, x) = angle(2 * i, around).sin_cos();
+            let (y, x) = libm::sincos(angle(2 * i, around));
             mesh.points.push(Point3::new(sin * x, sin * y, cos));
         }
     }
@@ -114,7 +114,7 @@ pub fn banded_sphere(rings: u32) -> TriMesh {
 
 /// Torus around z: a tube of this radius along the unit circle, with `n` points along it and `m` around it.
 pub fn torus_surface(n: u32, m: u32, tube: f64) -> TriMesh {
-    let angle = |part: u32, of: u32| (std::f64::consts::TAU * f64::from(part) / f64::from(of)).sin_cos();
+    let angle = |part: u32, of: u32| libm::sincos(std::f64::consts::TAU * f64::from(part) / f64::from(of));
     let at = |i: u32, j: u32| {
         let ((su, cu), (sv, cv)) = (angle(i, n), angle(j, m));
         Point3::new((1.0 + tube * cv) * cu, (1.0 + tube * cv) * su, tube * sv)
@@ -157,7 +157,7 @@ fn disc_lattice(rings: u32) -> (Vec<Point3>, Vec<[u32; 3]>) {
     let start = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
     for ring in 1..=rings {
         for i in 0..6 * ring {
-            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(6 * ring)).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / f64::from(6 * ring));
             points.push(Point3::new(cos, sin, 0.0) * (f64::from(ring) / f64::from(rings)));
         }
     }

@@ -25,7 +25,7 @@ pub fn tetrahedra(count: usize) -> String {
 
 /// Formats five significant digits, independent of the unit.
 pub fn digits(x: f64) -> String {
-    let magnitude = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
+    let magnitude = if x == 0.0 { 0.0 } else { libm::log10(x.abs()).floor() };
     if (-3.0..7.0).contains(&magnitude) {
         format!("{x:.*}", (4.0 - magnitude).max(0.0) as usize)
     } else {
@@ -42,7 +42,7 @@ pub fn number(x: f64) -> String {
 /// Formats a position with seven digits of its largest coordinate, to be pasted after `--at` or `#at=`.
 pub fn place(at: [f64; 3]) -> String {
     let largest = at.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    let magnitude = if largest > 0.0 { largest.log10().floor() } else { 0.0 };
+    let magnitude = if largest > 0.0 { libm::log10(largest).floor() } else { 0.0 };
     if !(-6.0..12.0).contains(&magnitude) {
         return at.map(|x| format!("{x:.6e}")).join(",");
     }

@@ -263,7 +263,7 @@ impl Course {
         let here = self.points[i];
         let back = here - self.point((s - run).max(0.0));
         let onward = self.point((s + run).min(self.length())) - here;
-        back.cross(&onward).norm().atan2(back.dot(&onward))
+        libm::atan2(back.cross(&onward).norm(), back.dot(&onward))
     }
 
     /// Maximal parts of [lo, hi] away from nodes where the vessel turns by more than `max_turn` over one radius. The
@@ -278,7 +278,7 @@ impl Course {
                 continue;
             }
             let radius = self.radii[i - 1][1].max(self.radii[i][0]);
-            let reach = radius * (0.8 + 1.25 * (0.5 * turn).tan().abs());
+            let reach = radius * (0.8 + 1.25 * libm::tan(0.5 * turn).abs());
             let (from, to) = (self.arc()[i] - reach, self.arc()[i] + reach);
             if to <= lo || from >= hi {
                 continue;

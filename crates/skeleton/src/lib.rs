@@ -21,7 +21,7 @@
 //! | find where branches can be cut | [`cuttability`], [`course`] |
 //! | measure it | [`Metrics`] |
 //! | find the vessel nearest to a place | [`Tubes`] |
-//! | choose edge lengths | [`SizeAt`], [`resolution`] |
+//! | choose edge lengths | [`SizeAt`], [`SizeField`], [`resolution`] |
 //!
 //! The crate has no features.
 
@@ -36,6 +36,7 @@ pub mod cuttability;
 mod elements;
 mod error;
 mod extend;
+mod fine_place;
 #[doc(hidden)]
 pub mod fixtures;
 mod graph;
@@ -45,6 +46,7 @@ mod metrics;
 mod overlap;
 pub mod resolution;
 mod size_at;
+mod size_field;
 #[cfg(test)]
 mod tests;
 mod tubes;
@@ -58,18 +60,20 @@ pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, sepa
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
 pub use error::{LARGEST, SkeletonError};
 pub use extend::Extended;
+pub use fine_place::{FinePlace, LEAST_SIZE};
 pub use graph::{Adjacency, Component, Components};
 pub use groups::LineGroup;
 pub use metrics::{Barrier, Metrics, NARROW, PairGradient, Share};
 pub use overlap::{Overlap, Overlaps};
-pub use size_at::{BadSize, FineFork, LEAST_SIZE, NodeSizes, SizeAt};
+pub use size_at::{BadSize, NodeSizes, SizeAt};
+pub use size_field::{FineStation, SizeField, SizeFieldError};
 pub use tubes::{NearestTube, Tubes};
 
 pub use chains::Chains;
+pub use fine_place::Leg;
 pub use groups::Kinship;
 pub use metrics::paper_unit;
 pub use overlap::{JOINED, deepest_apart};
-pub use size_at::Leg;
 pub use walk::LocalDistances;
 
 /// The examples of the README are tests.

@@ -288,7 +288,7 @@ mod tests {
 
     /// Two straight vessels that leave one point at an angle (degrees).
     fn fork(angle: f64) -> Skeleton {
-        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(angle.to_radians());
         network(&[[0.0; 3], [20.0, 0.0, 0.0], [20.0 * cos, 20.0 * sin, 0.0]], 1.0, &[(0, 1), (0, 2)])
     }
 
@@ -322,7 +322,7 @@ mod tests {
         let arc = |radius: f64| -> Vec<[f64; 3]> {
             let steps = (std::f64::consts::PI * radius / 0.5) as u32;
             let angle = |i: u32| std::f64::consts::PI * f64::from(i) / f64::from(steps);
-            (0..=steps).map(|i| [radius * angle(i).cos(), radius * angle(i).sin(), 0.0]).collect()
+            (0..=steps).map(|i| [radius * libm::cos(angle(i)), radius * libm::sin(angle(i)), 0.0]).collect()
         };
         let chain = |points: &[[f64; 3]]| {
             let edges: Vec<(u32, u32)> = (1..points.len() as u32).map(|i| (i - 1, i)).collect();

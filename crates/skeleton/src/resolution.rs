@@ -9,3 +9,6 @@ pub const KAPPA: f64 = 0.33;
 
 /// Exponent of the growth of edges with the radius of wider vessels; 1 is proportional.
 pub const FOLLOW: f64 = 1.0;
+
+/// Maximum growth of the target edge length per unit of distance: edges that share a vertex differ by a fifth.
+pub const GROWTH: f64 = 0.25;

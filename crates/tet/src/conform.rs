@@ -78,7 +78,7 @@ fn for_volume(surface: &TriMesh, interior: &Interior, refinement: Option<&Refine
     match (interior, refinement.and_then(|r| r.bounds.max_volume)) {
         (Interior::Lattice { cell: None, clearance }, Some(bound)) => {
             // A cube holds twelve tetrahedra.
-            let cell = (12.0 * sized::VOLUME_SHARE * bound).cbrt().min(usual);
+            let cell = libm::cbrt(12.0 * sized::VOLUME_SHARE * bound).min(usual);
             let near = CLEARANCE / CELL * cell.max(0.5 * usual);
             Interior::Lattice { cell: Some(cell), clearance: Some(clearance.unwrap_or(near)) }
         }

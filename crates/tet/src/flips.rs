@@ -229,7 +229,7 @@ mod tests {
         let mut points = vec![Point3::new(0.0, 0.0, -1.0), Point3::new(0.0, 0.0, 1.0)];
         for i in 0..n {
             let w = f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-            points.push(Point3::new(w.cos(), w.sin(), 0.0));
+            points.push(Point3::new(libm::cos(w), libm::sin(w), 0.0));
         }
         let tets: Vec<_> = (0..n).map(|i| [0, 1, 2 + i, 2 + (i + 1) % n]).collect();
         let c = Complex::from_mesh(points, &tets).unwrap();

@@ -162,7 +162,7 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
         Interior::Growing { .. } => r
             .refinement
             .and_then(|x| x.bounds.max_volume)
-            .map(|v| TreeOptions::edge_of((12.0 * VOLUME_SHARE * v).cbrt())),
+            .map(|v| TreeOptions::edge_of(libm::cbrt(12.0 * VOLUME_SHARE * v))),
         Interior::Lattice { cell: None, clearance: None } if !matches!(r.sizing, Sizing::Surface) => None,
         _ => return Ok(None),
     };
@@ -225,7 +225,7 @@ fn within(estimate: f64, limit: usize) -> Result<(), TetError> {
 
 /// Rounds an estimate to two digits.
 fn rounded(estimate: f64) -> usize {
-    let unit = 10_f64.powf((estimate.log10().floor() - 1.0).max(0.0));
+    let unit = libm::pow(10_f64, (libm::log10(estimate).floor() - 1.0).max(0.0));
     ((estimate / unit).ceil() * unit) as usize
 }
 
@@ -303,7 +303,7 @@ pub(super) fn goals(refinement: Option<&Refinement>) -> Goals<'static> {
 
 /// Edge length of a regular tetrahedron with this volume.
 pub(super) fn edge_of_volume(volume: f64) -> f64 {
-    (8.485_281_374 * volume).cbrt()
+    libm::cbrt(8.485_281_374 * volume)
 }
 
 /// Edge length wanted at a point: from the size field, or the surface's mean without one.

@@ -18,7 +18,7 @@ pub(super) fn tube(n: u32, rings: u32, length: f64, centre: bool, direction: Vec
         for i in 0..n {
             let angle = f64::from(i) / f64::from(n) * std::f64::consts::TAU;
             let z = length * f64::from(r) / f64::from(rings - 1);
-            s.points.push(Point3::from(u * angle.cos() + v * angle.sin() + w * z));
+            s.points.push(Point3::from(u * libm::cos(angle) + v * libm::sin(angle) + w * z));
         }
     }
     let at = |r: u32, i: u32| r * n + i % n;
@@ -219,7 +219,7 @@ proptest! {
             // Star-shaped, so it cannot intersect itself.
             let mut r = 1.0;
             for &(x, y, z, size) in &bumps {
-                r += size / bumps.len() as f64 * (4.0 * p.coords.dot(&Vec3::new(x, y, z))).sin();
+                r += size / bumps.len() as f64 * libm::sin(4.0 * p.coords.dot(&Vec3::new(x, y, z)));
             }
             *p = Point3::from(p.coords * r);
         }

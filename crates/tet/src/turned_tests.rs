@@ -57,7 +57,7 @@ fn plate(n: u32, height: f64, rng: &mut Rng) -> TriMesh {
         *a *= std::f64::consts::TAU / f64::from(n);
     }
     for z in [0.0, height] {
-        s.points.extend(angles.iter().map(|a| Point3::new(a.cos(), a.sin(), z)));
+        s.points.extend(angles.iter().map(|&a| Point3::new(libm::cos(a), libm::sin(a), z)));
     }
     let rim: Vec<u32> = (0..n).collect();
     triangulated(&rim.iter().rev().copied().collect::<Vec<_>>(), rng, &mut s.triangles);
@@ -179,7 +179,7 @@ fn turned_plates_as_thin_as_can_be_are_filled() {
     for seed in 0..cases() {
         let mut rng = Rng(seed);
         // From thick ones to one unit in the last place.
-        let height = 10.0_f64.powf(-16.0 * rng.share()).max(f64::EPSILON);
+        let height = libm::pow(10.0_f64, -16.0 * rng.share()).max(f64::EPSILON);
         let n = 4 + rng.below(20) as u32;
         let plate = plate(n, height, &mut rng);
         fills(&turned(plate, &mut rng), &format!("thin {seed} {n} {height}"));
@@ -216,7 +216,7 @@ fn nearly_flat_discs_are_filled() {
     for seed in 0..cases() {
         let mut rng = Rng(seed);
         let n = 5 + rng.below(60) as u32;
-        let noise = 10.0_f64.powf(-16.0 + 8.0 * rng.share());
+        let noise = libm::pow(10.0_f64, -16.0 + 8.0 * rng.share());
         let mut plate = split(&plate(n, 0.3, &mut rng));
         for p in &mut plate.points {
             p.z += noise * (rng.share() - 0.5);

@@ -82,7 +82,7 @@ pub fn with<R>(
     caps: [bool; 2],
     then: impl FnOnce(&Template) -> R,
 ) -> Option<R> {
-    let power = (length.ln() / STEP.ln()).round() as i32;
+    let power = (libm::log(length) / libm::log(STEP)).round() as i32;
     let layers = params.layers.map(|layers| (layers.count, [layers.growth, layers.thickness].map(f64::to_bits)));
     let kept = slot((corners, power, caps, layers, params.core.to_bits()));
     kept.get_or_init(|| Template::best(params, STEP.powi(power), caps)).as_ref().map(then)
@@ -242,7 +242,9 @@ impl Rings {
                 }
                 let angle = |i: u32| TAU * (f64::from(i) + 0.5 * f64::from(k % 2)) / f64::from(count);
                 let radius = wall * share;
-                points.extend((0..count).map(|i| Point3::new(radius * angle(i).cos(), radius * angle(i).sin(), z)));
+                points.extend(
+                    (0..count).map(|i| Point3::new(radius * libm::cos(angle(i)), radius * libm::sin(angle(i)), z)),
+                );
             }
         }
         points
@@ -250,12 +252,16 @@ impl Rings {
 
     /// Number of edges from axis to wall, which grow inwards, relative to uniform edges.
     fn steps(&self) -> f64 {
-        if self.core == 1.0 { 1.0 } else { self.core.ln() / (self.core - 1.0) }
+        if self.core == 1.0 { 1.0 } else { libm::log(self.core) / (self.core - 1.0) }
     }
 
     /// Fraction of the radius within a fraction of these edges.
     fn share(&self, of_steps: f64) -> f64 {
-        if self.core == 1.0 { of_steps } else { self.core * (1.0 - self.core.powf(-of_steps)) / (self.core - 1.0) }
+        if self.core == 1.0 {
+            of_steps
+        } else {
+            self.core * (1.0 - libm::pow(self.core, -of_steps)) / (self.core - 1.0)
+        }
     }
 }
 

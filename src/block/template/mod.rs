@@ -154,7 +154,7 @@ impl TemplateImage<'_> {
         let (x, y) = if self.twist == 0.0 {
             (p.x, p.y)
         } else {
-            let (sine, cosine) = (self.twist * share).sin_cos();
+            let (sine, cosine) = libm::sincos(self.twist * share);
             (cosine * p.x - sine * p.y, sine * p.x + cosine * p.y)
         };
         place.origin + (place.u * x + place.w * y) * place.radius

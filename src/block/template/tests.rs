@@ -15,8 +15,8 @@ fn section(z: f64, radius: f64) -> Section {
 fn arc(bend: f64, angle: f64) -> Vec<Section> {
     let at = |i: u32| angle * f64::from(i) / 12.0;
     let place = |t: f64| Section {
-        origin: Point3::new(0.0, bend * t.sin(), bend * (1.0 - t.cos())),
-        axis: Vec3::new(0.0, t.cos(), t.sin()),
+        origin: Point3::new(0.0, bend * libm::sin(t), bend * (1.0 - libm::cos(t))),
+        axis: Vec3::new(0.0, libm::cos(t), libm::sin(t)),
         radius: 1.0,
     };
     (0..=12).map(at).map(place).collect()

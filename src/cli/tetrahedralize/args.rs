@@ -71,6 +71,12 @@ pub struct Args {
     /// Maximum edge length in the interior (default: any that the growth gives)
     #[arg(long, value_name = "LENGTH", conflicts_with = "tetgen", allow_negative_numbers = true, value_parser = number)]
     pub size: Option<f64>,
+    /// Maximum edge lengths on an earlier mesh (`.vtu`). Each place has that of the nearest point with a value
+    #[arg(long, value_name = "FILE", requires = "array", conflicts_with_all = ["size", "uniform", "no_refine", "tetgen"])]
+    pub sizes_from: Option<PathBuf>,
+    /// Array of `--sizes-from`: an edge length for each point or each cell
+    #[arg(long, value_name = "NAME", requires = "sizes_from")]
+    pub array: Option<String>,
     /// Growth of edge lengths per layer of tetrahedra, away from the surface and from facets; at least 1.1
     #[arg(long, value_name = "FACTOR", default_value_t = Interior::GROWTH, value_parser = number)]
     pub growth: f64,

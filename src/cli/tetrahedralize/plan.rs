@@ -3,10 +3,13 @@
 use super::args::{Args, RemeshArgs};
 use super::format::{InputFormat, Target};
 use super::switches::Switches;
+use crate::cli::blocks::size_field;
 use crate::cli::exit::Failure;
-use anastomesh_mesh::{Bound, Bounds, REGULAR_DIHEDRAL};
+use anastomesh_mesh::{Bound, Bounds, Point3, REGULAR_DIHEDRAL};
+use anastomesh_skeleton::SizeField;
 use anastomesh_tet::{Boundary, Effort, InputKind, Interior, Layers, Refinement, Region, Sizing, Tetrahedralizer};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Side of the lattice cubes in edge lengths, so that a body-centred lattice has edges of about that length.
 const LATTICE_CELL: f64 = 1.08;
@@ -23,6 +26,9 @@ pub struct TetPlan {
     pub bounds: Bounds,
     /// Maximum edge length; `None`: any that the growth gives.
     pub size: Option<f64>,
+    /// Maximum edge lengths at points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes_from: Option<SizeField>,
     /// Growth of edge lengths per layer of tetrahedra; `None`: they are uniform.
     pub growth: Option<f64>,
     /// Maximum edge length in regions, by number.
@@ -120,6 +126,9 @@ impl TetPlan {
         plan.region_growths.clone_from(&args.region_growth);
         plan.max_tets = args.max_tets;
         plan.growth = Some(args.growth).filter(|_| !args.uniform);
+        if let (Some(path), Some(array)) = (&args.sizes_from, &args.array) {
+            plan.sizes_from = Some(size_field(path, array)?);
+        }
         Self::validate(args)?;
         Ok((plan, notes))
     }
@@ -131,6 +140,7 @@ impl TetPlan {
             refine,
             bounds: bounds_of(args),
             size: args.size,
+            sizes_from: None,
             growth: None,
             region_sizes: Vec::new(),
             region_growths: Vec::new(),
@@ -163,6 +173,7 @@ impl TetPlan {
             refine,
             bounds: Bounds { max_volume: s.max_volume, ..s.quality.unwrap_or_default() },
             size: None,
+            sizes_from: None,
             growth: None,
             region_sizes: Vec::new(),
             region_growths: Vec::new(),
@@ -226,7 +237,10 @@ impl TetPlan {
             .kind(if self.plc { InputKind::Plc } else { InputKind::Closed })
             .interior(interior)
             .refine(bounded.then_some(refinement))
-            .sizing(self.size.filter(|_| sized).map_or(Sizing::Surface, Sizing::Constant))
+            .sizing(match &self.sizes_from {
+                Some(field) => sizing_of(field.clone()),
+                None => self.size.filter(|_| sized).map_or(Sizing::Surface, Sizing::Constant),
+            })
             .boundary(self.boundary())
             .layers(self.layers)
             .layers_in(self.layers_in.as_slice())
@@ -235,6 +249,11 @@ impl TetPlan {
             .max_tets(self.max_tets)
             .strict(self.strict)
     }
+}
+
+/// Edge lengths of the nearest point of a field.
+fn sizing_of(field: SizeField) -> Sizing {
+    Sizing::Function(Arc::new(move |p: &Point3| field.nearest(p)))
 }
 
 /// Checks lengths and growths.

@@ -77,7 +77,11 @@ pub enum SwitchError {
 const UNSUPPORTED: [(char, &str, &str); 15] = [
     ('r', "refinement of an existing mesh", "give the surface of the mesh as input"),
     ('R', "coarsening", "give a coarser surface as input"),
-    ('m', "a sizing function from a .mtr or background mesh", "use --size, or the library with Sizing::Function"),
+    (
+        'm',
+        "a sizing function from a .mtr or background mesh",
+        "use --sizes-from with --array, or the library with Sizing::Function",
+    ),
     ('i', "inserting a list of points", "put the points into the .node file, or use the library with Interior::Points"),
     ('w', "a weighted Delaunay tetrahedralization", "leave the weights out"),
     ('c', "keeping the convex hull", "give a .node file alone, which is filled up to its hull"),

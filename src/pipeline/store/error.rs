@@ -117,8 +117,6 @@ pub enum StoreError {
 pub enum Difference {
     /// Another version of the program, or an unreadable manifest.
     Version(String),
-    /// Another processor or C library, whose functions round differently.
-    Arithmetic,
     /// Another network.
     Network,
     /// Another option.
@@ -159,7 +157,6 @@ impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Version(program) => write!(f, "another version of the program ({program})"),
-            Self::Arithmetic => f.write_str("another machine type, whose processor or C library rounds differently"),
             Self::Network => f.write_str("another network"),
             Self::Option { name, was, is } => write!(f, "other options ({name} was {was}, now {is})"),
         }

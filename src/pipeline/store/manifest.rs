@@ -6,13 +6,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::arithmetic;
 use super::error::Difference;
 use super::key::{Key, KeyMaker};
 use anastomesh_skeleton::Skeleton;
 
 /// Version of the format of work directories.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 pub(crate) const MANIFEST: &str = "anastomesh.json";
 
@@ -39,8 +38,6 @@ pub(crate) const MANIFEST: &str = "anastomesh.json";
 pub struct Manifest {
     format: u32,
     program: String,
-    /// Fingerprint of the arithmetic. Results that differ in the last bits would give different discs at joints.
-    arithmetic: String,
     network: String,
     options: serde_json::Value,
 }
@@ -49,8 +46,7 @@ impl Manifest {
     /// Creates the manifest of a network as read. `options` is an object with all other inputs of the mesh.
     pub fn new(network: &Skeleton, options: serde_json::Value) -> Self {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
-        let arithmetic = format!("{:032x}", arithmetic::fingerprint().0);
-        Self { format: FORMAT, program, arithmetic, network: format!("{:032x}", fingerprint(network).0), options }
+        Self { format: FORMAT, program, network: format!("{:032x}", fingerprint(network).0), options }
     }
 
     /// Reads the manifest of a folder.
@@ -70,9 +66,6 @@ impl Manifest {
     fn difference(&self, before: &Self) -> Option<Difference> {
         if (before.format, &before.program) != (self.format, &self.program) {
             return Some(Difference::Version(format!("{}, format {}", before.program, before.format)));
-        }
-        if before.arithmetic != self.arithmetic {
-            return Some(Difference::Arithmetic);
         }
         if before.network != self.network {
             return Some(Difference::Network);

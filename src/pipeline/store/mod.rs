@@ -3,7 +3,6 @@
 //! A block is looked up by its key before it is meshed. So a block that does not change when others are cut again is not
 //! meshed again. A run that was killed is repeated from the start, and finds nearly all blocks in the store.
 
-mod arithmetic;
 mod error;
 mod extents;
 mod folder;

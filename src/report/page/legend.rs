@@ -27,7 +27,7 @@ impl Legend {
 
     /// Vessel radii on a logarithmic scale.
     pub fn radius(scale: &Scale, unit: LengthUnit) -> Self {
-        let at = |share: f64| scale.low * (scale.high / scale.low).powf(share);
+        let at = |share: f64| scale.low * libm::pow(scale.high / scale.low, share);
         let colours = (0..SAMPLES).map(|i| scale.colour(at(i as f64 / (SAMPLES - 1) as f64))).collect();
         let ticks = [0.0, 0.5, 1.0].map(|share| figure(at(share))).to_vec();
         Self::Bar { title: format!("{}, logarithmic", unit.title("Vessel radius", "")), colours, ticks }

@@ -66,7 +66,7 @@ mod tests {
         (0..n)
             .map(|i| {
                 let t = std::f64::consts::TAU * (i as f64 + phase) / n as f64;
-                Point3::new(t.cos(), t.sin(), z)
+                Point3::new(libm::cos(t), libm::sin(t), z)
             })
             .collect()
     }

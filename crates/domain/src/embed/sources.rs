@@ -45,7 +45,7 @@ impl Line {
         let sizes = [at(0.0), at(1.0)];
         // Mean of a length that grows linearly, in steps that grow alike.
         let [a, b] = sizes;
-        let mean = if (b - a).abs() <= EQUAL * a { a } else { (b - a) / (b / a).ln() };
+        let mean = if (b - a).abs() <= EQUAL * a { a } else { (b - a) / libm::log(b / a) };
         let steps = (network.length(edge) / (STEP * mean)).ceil().max(1.0);
         Self { ends: [tube.a, tube.b], sizes, steps }
     }
@@ -55,7 +55,7 @@ impl Line {
         let ([p, q], [a, b]) = (self.ends, self.sizes);
         (0..=self.steps as u64).map(move |i| {
             let part = i as f64 / self.steps;
-            let t = if (b - a).abs() <= EQUAL * a { part } else { ((b / a).powf(part) - 1.0) / (b / a - 1.0) };
+            let t = if (b - a).abs() <= EQUAL * a { part } else { (libm::pow(b / a, part) - 1.0) / (b / a - 1.0) };
             (p.lerp(&q, t.clamp(0.0, 1.0)), a + t * (b - a))
         })
     }

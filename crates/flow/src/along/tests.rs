@@ -62,7 +62,7 @@ fn poiseuille(mesh: &TetMesh, radius: f64, length: f64) -> FlowResult {
 fn tube() -> (FlowResult, Skeleton) {
     let mesh = tube_lattice(8, 60, 0.25);
     let [radius, length] =
-        [|p: &Point3| p.x.hypot(p.y), |p: &Point3| p.z].map(|of| mesh.points.iter().map(of).fold(0.0, f64::max));
+        [|p: &Point3| libm::hypot(p.x, p.y), |p: &Point3| p.z].map(|of| mesh.points.iter().map(of).fold(0.0, f64::max));
     let middle = 0.4 * length;
     let skeleton = network(&[[0.0; 3], [0.0, 0.0, middle], [0.0, 0.0, length]], radius, &[(0, 1), (2, 1)]);
     (poiseuille(&mesh, radius, length), skeleton)

@@ -91,7 +91,7 @@ impl StructuredTree {
     fn load(&self, radius: f64, viscosity: f64) -> Load {
         let end = self.minimum_radius.max(SMALLEST * radius);
         let counts = self.radius_ratios.map(|ratio| {
-            let generations = (end / radius).ln() / ratio.ln();
+            let generations = libm::log(end / radius) / libm::log(ratio);
             generations.max(0.0).ceil() as usize + 1
         });
         // Vessels of i divisions to the wider and j to the thinner side are equal.

@@ -28,7 +28,7 @@ impl Harmonic {
         let first = TAU / waveform.period();
         let harmonic = |n: u32| {
             let frequency = f64::from(n) * first;
-            let turn = |time: f64| Complex::from_polar(1.0, -frequency * time);
+            let turn = |time: f64| turned(-frequency * time);
             let pieces = times.windows(2).zip(rates.windows(2));
             let sum: Complex<f64> =
                 pieces.map(|(t, q)| (turn(t[1]) - turn(t[0])) * ((q[1] - q[0]) / (t[1] - t[0]))).sum();
@@ -39,7 +39,7 @@ impl Harmonic {
 
     /// Complex value at a time; the real part is the harmonic.
     pub(crate) fn at(&self, time: f64) -> Complex<f64> {
-        self.amplitude * Complex::from_polar(1.0, self.frequency * time)
+        self.amplitude * turned(self.frequency * time)
     }
 }
 
@@ -57,7 +57,8 @@ pub(crate) fn womersley(alpha: f64, share: f64) -> Complex<f64> {
         bessel(alpha * share) / bessel(alpha)
     } else if alpha * share > 1.0 {
         let root = Complex::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2);
-        (root * (alpha * (share - 1.0))).exp() / share.sqrt()
+        let power = root * (alpha * (share - 1.0));
+        turned(power.im) * (libm::exp(power.re) / share.sqrt())
     } else {
         Complex::new(0.0, 0.0)
     };
@@ -78,6 +79,12 @@ fn bessel(x: f64) -> Complex<f64> {
     sum
 }
 
+/// Complex number of magnitude 1 and this angle.
+fn turned(angle: f64) -> Complex<f64> {
+    let (sine, cosine) = libm::sincos(angle);
+    Complex::new(cosine, sine)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,7 +93,8 @@ mod tests {
     fn harmonics_add_up_to_the_waveform() {
         let count = 100;
         let times: Vec<f64> = (0..=count).map(|i| 0.8 * f64::from(i) / f64::from(count)).collect();
-        let rates = times.iter().map(|t| 5.0 + 2.0 * (TAU * t / 0.8).cos() + (3.0 * TAU * t / 0.8).sin()).collect();
+        let rates =
+            times.iter().map(|t| 5.0 + 2.0 * libm::cos(TAU * t / 0.8) + libm::sin(3.0 * TAU * t / 0.8)).collect();
         let waveform = Waveform::new(times, rates).unwrap();
         let harmonics = Harmonic::of(&waveform);
         assert!((harmonics[0].amplitude - Complex::new(2.0, 0.0)).norm() < 2e-3, "{harmonics:?}");

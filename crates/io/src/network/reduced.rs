@@ -81,7 +81,7 @@ impl Stiffness {
     #[must_use]
     pub fn at(&self, radius: f64) -> f64 {
         let [k1, k2, k3] = self.k;
-        k1 * (k2 * radius).exp() + k3
+        k1 * libm::exp(k2 * radius) + k3
     }
 }
 

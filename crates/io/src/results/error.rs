@@ -74,6 +74,32 @@ pub enum ResultFault {
         /// Number of the value, from 1.
         number: usize,
     },
+    /// The file has no such array.
+    #[error("there is no array '{array}'; the file has {}", if found.is_empty() { "none".to_owned() } else { found.join(", ") })]
+    NoArray {
+        /// Name of the array.
+        array: String,
+        /// Quoted names of those of the file.
+        found: Vec<String>,
+    },
+    /// An array has several values for each point or cell.
+    #[error("array '{array}' has {components} components; give one edge length per point or cell")]
+    NotScalar {
+        /// Name of the array.
+        array: String,
+        /// Number of components.
+        components: usize,
+    },
+    /// A value is not an edge length.
+    #[error("array '{array}' has the value {value} (number {number}); give finite lengths above zero")]
+    NotALength {
+        /// Name of the array.
+        array: String,
+        /// Number of the value, from 1.
+        number: usize,
+        /// The value.
+        value: f64,
+    },
     /// The boundary has no wall.
     #[error("the mesh has no wall: {found}; give a result with a patch of type wall")]
     NoWall {

@@ -1,4 +1,5 @@
-//! Results of flow solvers: velocity and pressure in the cells of a mesh, and flow rates through its faces.
+//! Results of flow solvers: velocity and pressure in the cells of a mesh, and flow rates through its faces. Edge lengths
+//! that were estimated from them.
 //!
 //! ```
 //! use anastomesh_io::results::{ResultError, read_result};
@@ -11,6 +12,7 @@ mod content;
 mod error;
 mod openfoam;
 mod read;
+mod sizes;
 #[cfg(test)]
 mod tests;
 mod vtu;
@@ -18,3 +20,4 @@ mod vtu;
 pub use content::{FlowResult, InnerFlux, Near, OuterFlux};
 pub use error::{ResultError, ResultFault};
 pub use read::read_result;
+pub use sizes::read_lengths;

@@ -60,7 +60,7 @@ mod tests {
             enough in -2.0..9.0_f64,
         ) {
             let f = |x: f64| {
-                let sum: f64 = terms.iter().map(|&(p, k, off)| k * (x - p).hypot(off)).sum();
+                let sum: f64 = terms.iter().map(|&(p, k, off)| k * libm::hypot(x - p, off)).sum();
                 sum + tilt * x
             };
             let sampled = (0..=4000).map(|i| f(-4.0 + f64::from(i) / 500.0)).fold(f64::INFINITY, f64::min);

@@ -180,7 +180,7 @@ mod tests {
         let mut points = vec![Point3::origin()];
         points.extend((0..n).map(|i| {
             let angle = 0.1 + turns * std::f64::consts::TAU * f64::from(i) / f64::from(n);
-            Point3::new(angle.cos(), angle.sin(), 0.1 * f64::from(i % 2))
+            Point3::new(libm::cos(angle), libm::sin(angle), 0.1 * f64::from(i % 2))
         }));
         (points, (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect())
     }

@@ -158,7 +158,7 @@ mod tests {
         let [a, b, c] = [[0.1, 0.2, 0.3], [1.3, 0.7, 0.9], [0.4, 1.1, -0.3]].map(Point3::from);
         for step in 0..60 {
             // Nearer and nearer to the plane.
-            let d = a + 0.3 * (b - a) + 0.4 * (c - a) + super::super::Vec3::z() * f64::from(step).exp2().recip();
+            let d = a + 0.3 * (b - a) + 0.4 * (c - a) + super::super::Vec3::z() * libm::exp2(f64::from(step)).recip();
             let expected = det(&differences(&a, &[&b, &c, &d]));
             let error = exact(orient3d_accurate(&a, &b, &c, &d)) - &expected;
             let square = |x: &BigRational| x * x;

@@ -42,7 +42,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn on_cylinder(radius: f64, angle: f64, z: f64) -> (Vec3, Vec3) {
-        let normal = Vec3::new(angle.cos(), angle.sin(), 0.0);
+        let normal = Vec3::new(libm::cos(angle), libm::sin(angle), 0.0);
         (normal * radius + Vec3::z() * z, normal)
     }
 

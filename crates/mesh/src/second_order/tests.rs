@@ -104,7 +104,7 @@ fn balanced_vertices_enclose_the_volume_of_flat_faces() {
     // Twelve points around, outside of the unit circle, so that the polygon has the area π.
     let mut given = tube(2, 6, 0.5);
     let step = std::f64::consts::PI / 6.0;
-    let radius = (step / step.sin()).sqrt();
+    let radius = (step / libm::sin(step)).sqrt();
     for p in &mut given.mesh.points {
         (p.x, p.y) = (p.x * radius, p.y * radius);
     }
@@ -129,7 +129,7 @@ fn balanced_vertices_enclose_the_volume_of_flat_faces() {
 fn thin_layers_follow_their_wall() {
     // The layer is thinner than the arcs of the wall are high, and than its vertices move.
     let step = std::f64::consts::PI / 6.0;
-    let given = tube_with_layer((step / step.sin()).sqrt(), 0.01);
+    let given = tube_with_layer((step / libm::sin(step)).sqrt(), 0.01);
     let mut moved = given.clone();
     moved.mesh.points = SecondOrder::balanced_points(&given, &|_| Vec3::zeros());
     let (second, curving) = SecondOrder::curved(&moved);

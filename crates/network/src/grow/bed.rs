@@ -35,7 +35,7 @@ impl BedParams {
     pub fn usual_size(&self, terminals: u32) -> f64 {
         let volume = f64::from(terminals) * 2.0 * PER_TERMINAL * self.length.powi(3) / DENSITY;
         let unit = std::f64::consts::FRAC_PI_6 * SEMI_AXES[0] * SEMI_AXES[1] * SEMI_AXES[2];
-        (volume / unit).cbrt()
+        libm::cbrt(volume / unit)
     }
 
     /// Maximum capillary radius.

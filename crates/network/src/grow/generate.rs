@@ -42,7 +42,7 @@ impl GenerateParams {
         if spacing < closest {
             return Err(GenerateError::TooDense { size, least: size * closest / spacing, terminals: self.terminals });
         }
-        let root = self.terminal_radius * f64::from(self.terminals).powf(1.0 / self.exponent);
+        let root = self.terminal_radius * libm::pow(f64::from(self.terminals), 1.0 / self.exponent);
         if root > THICKEST * size {
             return Err(GenerateError::TooThick { root, size });
         }
@@ -83,12 +83,12 @@ fn murray(tree: &tree::Tree, params: &GenerateParams, random: Random) -> Vec<f64
     for i in (1..powers.len()).rev() {
         if tree.sizes[i] == 1 {
             let off = TERMINAL_SPREAD * random.bell(Stream::Radius, i as u64);
-            powers[i] = (params.terminal_radius * (1.0 + off)).powf(p);
+            powers[i] = libm::pow(params.terminal_radius * (1.0 + off), p);
         }
         let power = powers[i];
         powers[tree.parents[i] as usize] += power;
     }
-    powers.iter().map(|power| power.powf(1.0 / p)).collect()
+    powers.iter().map(|&power| libm::pow(power, 1.0 / p)).collect()
 }
 
 fn skeleton(tree: &tree::Tree, radii: &[f64]) -> Skeleton {

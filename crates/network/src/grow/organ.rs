@@ -39,10 +39,10 @@ impl Organ {
     /// Longest extent of an organ with this number of terminals, in µm. Volume is proportional to the number of
     /// terminals, and lengths are proportional to their radius.
     pub fn usual_size(self, terminals: u32, terminal_radius: f64) -> f64 {
-        let kidney = KIDNEY * (f64::from(terminals) / TERMINALS).cbrt() * terminal_radius / TERMINAL_RADIUS;
+        let kidney = KIDNEY * libm::cbrt(f64::from(terminals) / TERMINALS) * terminal_radius / TERMINAL_RADIUS;
         match self {
             Self::Kidney => kidney,
-            Self::Ellipsoid => kidney * FILLED.cbrt(),
+            Self::Ellipsoid => kidney * libm::cbrt(FILLED),
         }
     }
 }
@@ -85,7 +85,7 @@ impl Shape {
         let start = [0, 1, 2].map(|axis| self.random.unit(Stream::Start, axis));
         let half = self.axes.z;
         let filled = self.filled();
-        let spacing = 2.0 * half * (filled / f64::from(count)).cbrt();
+        let spacing = 2.0 * half * libm::cbrt(filled / f64::from(count));
         let budget = (20.0 * f64::from(count) / filled) as u64 + 1000;
         let mut found = Vec::with_capacity(count as usize);
         for i in 0..budget {
@@ -115,6 +115,6 @@ impl Shape {
 
     /// Mean distance of neighbouring terminals.
     pub fn spacing(&self, count: u32) -> f64 {
-        2.0 * self.axes.z * (self.filled() / f64::from(count)).cbrt()
+        2.0 * self.axes.z * libm::cbrt(self.filled() / f64::from(count))
     }
 }

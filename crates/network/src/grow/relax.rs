@@ -129,7 +129,7 @@ fn opening(x: &Point3, p: &Point3, q: &Point3) -> Vec3 {
 /// Direction that depends only on the node, for coinciding nodes.
 fn any_direction(node: usize) -> Vec3 {
     let turn = node as f64 * 2.399_963_229_728_653;
-    Vec3::new(turn.cos(), turn.sin(), 0.5).normalize()
+    Vec3::new(libm::cos(turn), libm::sin(turn), 0.5).normalize()
 }
 
 /// Moves nodes out of thick vessels.

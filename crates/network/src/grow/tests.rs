@@ -28,7 +28,7 @@ fn check(s: &Skeleton, p: &GenerateParams) {
         assert!(edges.len() == 1 || edges.len() == 3, "{p:?}: {node:?}");
         // Murray's law; terminals vary a little around their radius.
         let [up, down @ ..] = edges else { panic!("no edge") };
-        let power = |e: &anastomesh_skeleton::EdgeId| s.edge(*e).radii[0].powf(p.exponent);
+        let power = |e: &anastomesh_skeleton::EdgeId| libm::pow(s.edge(*e).radii[0], p.exponent);
         match down {
             [] => assert!((s.edge(*up).radii[0] / p.terminal_radius - 1.0).abs() < 0.05),
             _ => assert!((power(up) / down.iter().map(power).sum::<f64>() - 1.0).abs() < 1e-9),

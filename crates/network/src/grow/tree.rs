@@ -87,7 +87,7 @@ fn branch(part: Subtree, weight: f64, random: Random) {
     part_points(points, near, &from);
     let (near_points, far_points) = points.split_at_mut(near);
     let targets = [from, centroid(far_points), centroid(near_points)];
-    let fork = fermat(&targets, [n, n - near, near].map(|count| (count as f64).powf(weight)));
+    let fork = fermat(&targets, [n, n - near, near].map(|count| libm::pow(count as f64, weight)));
     positions[0] = fork;
     let cut = 2 * (n - near) - 1;
     let (positions, parents, sizes) = (&mut positions[1..], &mut parents[1..], &mut sizes[1..]);

@@ -85,20 +85,20 @@ mod tests {
 
     /// Pseudo-random numbers between -1 and 1.
     fn noise(i: usize) -> f64 {
-        (i as f64 * 12.9898).sin() * 43758.5453 % 1.0
+        libm::sin(i as f64 * 12.9898) * 43758.5453 % 1.0
     }
 
     /// A noisy bend of three radii: points and radii.
     fn bend(amplitude: f64) -> (Vec<Point3>, Vec<f64>) {
         let at = |i: usize| {
             let (angle, off) = (i as f64 * 0.02, 3.0 + amplitude * noise(i));
-            Point3::new(off * angle.cos(), off * angle.sin(), amplitude * noise(i + 1000))
+            Point3::new(off * libm::cos(angle), off * libm::sin(angle), amplitude * noise(i + 1000))
         };
         ((0..=100).map(at).collect(), (0..=100).map(|i| 1.0 + amplitude * noise(i + 2000)).collect())
     }
 
     fn off_circle(points: &[Point3]) -> f64 {
-        let off = |p: &Point3| (p.x.hypot(p.y) - 3.0).hypot(p.z);
+        let off = |p: &Point3| libm::hypot(libm::hypot(p.x, p.y) - 3.0, p.z);
         points.iter().map(off).sum::<f64>() / points.len() as f64
     }
 

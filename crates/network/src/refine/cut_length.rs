@@ -155,10 +155,10 @@ fn push_angles(frame: &Frame, node: NodeId, out: &mut Vec<Push>) {
             if frame.is_as_close_as_may_be(node, levers) {
                 continue;
             }
-            if u.dot(&v) <= wanted.cos() * u.norm() * v.norm() {
+            if u.dot(&v) <= libm::cos(wanted) * u.norm() * v.norm() {
                 continue;
             }
-            let angle = u.cross(&v).norm().atan2(u.dot(&v));
+            let angle = libm::atan2(u.cross(&v).norm(), u.dot(&v));
             let [by_u, by_v] = opening(&u, &v);
             let gradient = [(levers[0], by_u), (levers[1], by_v), (node, -by_u - by_v)];
             project(frame, &gradient, wanted - angle, 0.5 * frame.skeleton.node(node).radius, out);

@@ -112,7 +112,7 @@ fn angle(frame: &Frame, node: NodeId, rate: f64, out: &mut Vec<Push>) {
     for (i, &e) in edges.iter().enumerate() {
         for &f in &edges[..i] {
             let [u, v] = [e, f].map(|e| frame.at(frame.lever(node, e)) - here);
-            let angle = u.cross(&v).norm().atan2(u.dot(&v));
+            let angle = libm::atan2(u.cross(&v).norm(), u.dot(&v));
             let weight = 1.0 / angle.max(LEAST_ANGLE);
             sum += (u + v) * (0.5 * weight);
             weights += weight;

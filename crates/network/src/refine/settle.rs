@@ -159,7 +159,7 @@ fn project(frame: &mut Frame, contacts: &Contacts, clearance: f64) -> bool {
         sum[node.index()] += push;
         count[node.index()] += 1;
     }
-    sum.iter_mut().zip(&count).for_each(|(sum, &count)| *sum /= f64::from(count.max(1)).powf(AVERAGE));
+    sum.iter_mut().zip(&count).for_each(|(sum, &count)| *sum /= libm::pow(f64::from(count.max(1)), AVERAGE));
     frame.clip(&mut sum);
     shape::smooth_steps(frame, &mut sum, &count);
     for (i, step) in sum.iter().enumerate().filter(|(_, step)| step.norm_squared() > 0.0) {

@@ -240,7 +240,7 @@ impl<'a> Solver<'a> {
         add(&contacts);
         add(&room);
         for (sum, &count) in sum.iter_mut().zip(&count) {
-            *sum /= f64::from(count.max(1)).powf(AVERAGE);
+            *sum /= libm::pow(f64::from(count.max(1)), AVERAGE);
         }
         if self.leashes.is_some() {
             self.frame.clip(&mut sum);

@@ -175,7 +175,7 @@ fn polylines_keep_their_shape() {
     let mut points: Vec<[f64; 3]> = (0..=60)
         .map(|i| {
             let a = std::f64::consts::PI * f64::from(i) / 60.0;
-            [30.0 * a.cos(), 30.0 * a.sin(), 0.0]
+            [30.0 * libm::cos(a), 30.0 * libm::sin(a), 0.0]
         })
         .collect();
     let mut edges: Vec<(u32, u32)> = (0..60).map(|i| (i, i + 1)).collect();
@@ -188,7 +188,7 @@ fn polylines_keep_their_shape() {
     for i in 1..60 {
         let at = |j: usize| refined.skeleton.nodes[j].position;
         let (u, v) = (at(i) - at(i - 1), at(i + 1) - at(i));
-        let turn = u.cross(&v).norm().atan2(u.dot(&v)).to_degrees();
+        let turn = libm::atan2(u.cross(&v).norm(), u.dot(&v)).to_degrees();
         assert!(turn < 25.0, "{turn} at {i}");
     }
 }
@@ -246,7 +246,8 @@ fn parameters_out_of_range_are_refused() {
 #[test]
 fn odd_networks_end_in_something_finite() {
     let ring: Vec<(u32, u32)> = (0..8).map(|i| (i, (i + 1) % 8)).collect();
-    let circle: Vec<[f64; 3]> = (0..8).map(|i| [f64::from(i).cos() * 9.0, f64::from(i).sin() * 9.0, 0.0]).collect();
+    let circle: Vec<[f64; 3]> =
+        (0..8).map(|i| [libm::cos(f64::from(i)) * 9.0, libm::sin(f64::from(i)) * 9.0, 0.0]).collect();
     let line = [[0.0; 3], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]];
     let coincident = [[0.0; 3], [10.0, 0.0, 0.0], [5.0, 0.0, 0.0], [15.0, 0.0, 0.0]];
     let cases = [
@@ -316,7 +317,7 @@ fn a_tangle_that_cannot_be_resolved_is_given_up() {
     let way = |i: usize| {
         let (z, angle) = (1.0 - 2.0 * (i as f64 + 0.5) / count as f64, 2.4 * i as f64);
         let across = (1.0 - z * z).sqrt();
-        [12.0 * across * angle.cos(), 12.0 * across * angle.sin(), 12.0 * z]
+        [12.0 * across * libm::cos(angle), 12.0 * across * libm::sin(angle), 12.0 * z]
     };
     let points: Vec<[f64; 3]> = (0..count).flat_map(|i| [way(i), way(i).map(|x| -x)]).collect();
     let edges: Vec<(u32, u32)> = (0..count as u32).map(|i| (2 * i, 2 * i + 1)).collect();

@@ -122,6 +122,6 @@ impl Skeleton {
     /// Angle between two edges that leave `node`, in radians.
     pub fn angle(&self, node: NodeId, edges: [EdgeId; 2]) -> f64 {
         let [u, v] = edges.map(|e| self.node(self.edge(e).other(node)).position - self.node(node).position);
-        u.cross(&v).norm().atan2(u.dot(&v))
+        libm::atan2(u.cross(&v).norm(), u.dot(&v))
     }
 }

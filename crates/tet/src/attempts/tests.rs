@@ -16,7 +16,7 @@ fn pipe(n: u32) -> TriMesh {
     for (radius, z) in [(1.0, 0.0), (1.0, 30.0), (0.8, 0.0), (0.8, 30.0)] {
         s.points.extend((0..n).map(|i| {
             let w = f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-            turn * Point3::new(radius * w.cos(), radius * w.sin(), z)
+            turn * Point3::new(radius * libm::cos(w), radius * libm::sin(w), z)
         }));
     }
     let rings = [[0, 1], [3, 2], [1, 3], [2, 0]];

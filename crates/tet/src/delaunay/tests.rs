@@ -98,7 +98,7 @@ fn points_on_a_sphere_with_one_far_vertex() {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 400.0;
         let w = f64::from(i) * 2.399_963;
         let r = (1.0 - z * z).sqrt();
-        points.push(Point3::new(r * w.cos(), r * w.sin(), z));
+        points.push(Point3::new(r * libm::cos(w), r * libm::sin(w), z));
     }
     let c = delaunay(&points).unwrap();
     check_delaunay(&points, &c);

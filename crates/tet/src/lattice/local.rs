@@ -77,18 +77,18 @@ impl Bands {
         if !spread.is_finite() || spread < BAND * BAND.sqrt() {
             return None;
         }
-        let count = ((spread.ln() / BAND.ln()).ceil() as usize).min(MAX_BANDS);
-        Some(Self { low, ratio: spread.powf(1.0 / count as f64), count })
+        let count = ((libm::log(spread) / libm::log(BAND)).ceil() as usize).min(MAX_BANDS);
+        Some(Self { low, ratio: libm::pow(spread, 1.0 / count as f64), count })
     }
 
     fn of_size(&self, size: f64) -> usize {
-        let k = (size / self.low).ln() / self.ratio.ln();
+        let k = libm::log(size / self.low) / libm::log(self.ratio);
         (k.max(0.0) as usize).min(self.count - 1)
     }
 
     /// Length in the middle of a band.
     fn middle(&self, k: usize) -> f64 {
-        self.low * self.ratio.powf(k as f64 + 0.5)
+        self.low * libm::pow(self.ratio, k as f64 + 0.5)
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
         for k in 0..rings {
             for i in 0..CORNERS {
                 let a = TAU * (f64::from(i) + 0.5 * f64::from(k % 2)) / f64::from(CORNERS);
-                s.points.push(Point3::new(r * a.cos(), r * a.sin(), z));
+                s.points.push(Point3::new(r * libm::cos(a), r * libm::sin(a), z));
             }
             z += 0.45 * r;
             r *= growth;

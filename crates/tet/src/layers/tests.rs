@@ -170,7 +170,7 @@ pub(super) fn capped_tube() -> Plc {
     let (around, rings) = (16_u32, 7_u32);
     let on_ring = |ring: u32, i: u32| {
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(around);
-        Point3::new(turn.cos(), turn.sin(), 0.5 * f64::from(ring))
+        Point3::new(libm::cos(turn), libm::sin(turn), 0.5 * f64::from(ring))
     };
     let mut points: Vec<Point3> = (0..rings).flat_map(|ring| (0..around).map(move |i| on_ring(ring, i))).collect();
     points.extend([0, rings - 1].map(|ring| Point3::new(0.1, 0.0, 0.5 * f64::from(ring))));

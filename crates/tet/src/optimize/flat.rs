@@ -92,7 +92,7 @@ mod tests {
         let mut points: Vec<Point3> = all.map(|x| turn * (Point3::from(x.map(f64::from)) - middle)).collect();
         for i in 0..80 {
             let z: f64 = (f64::from(i) + 0.5) / 40.0 - 1.0;
-            let (sin, cos) = (f64::from(i) * 2.399_963).sin_cos();
+            let (sin, cos) = libm::sincos(f64::from(i) * 2.399_963);
             let flat = (1.0 - z * z).sqrt();
             points.push(Point3::new(flat * cos, flat * sin, z) * (1.2 * f64::from(n)));
         }

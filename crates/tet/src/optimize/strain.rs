@@ -23,12 +23,12 @@ pub(crate) fn score(c: &Complex, v: &[u32; 4]) -> Option<f64> {
 /// small above, so that no repair creates more tetrahedra as bad.
 #[inline]
 pub(crate) fn strain(q: f64) -> f64 {
-    let bad = if q < STRAINED { (STRAINED / q.max(1e-12)).ln() } else { 0.0 };
+    let bad = if q < STRAINED { libm::log(STRAINED / q.max(1e-12)) } else { 0.0 };
     bad * (1.0 + STEEPER * bad) + 0.1 * (1.0 - q)
 }
 
 /// Radius ratio below which a tetrahedron has more strain than this, if below 1/2.
 pub(super) fn ratio_of_strain(strain: f64) -> f64 {
     let bad = ((1.0 + 4.0 * STEEPER * strain.max(0.0)).sqrt() - 1.0) / (2.0 * STEEPER);
-    STRAINED * (-bad).exp()
+    STRAINED * libm::exp(-bad)
 }

@@ -104,7 +104,7 @@ fn a_cavity_is_reconnected() {
     // removal nor a face flip alone undoes that.
     let mut points = vec![[0.0, 0.0, -0.1], [0.0, 0.0, 0.1], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
     for i in 0..4 {
-        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * f64::from(i)).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(i));
         points.push([cos, sin, 0.0]);
     }
     let mut tets = Vec::new();
@@ -132,7 +132,7 @@ fn a_cavity_is_reconnected() {
 fn short_edge_under_a_lid() -> TetMesh {
     let mut points = vec![[0.0, -0.005, 0.0], [0.0, 0.005, 0.0]];
     for i in 0..6 {
-        let (sin, cos) = (std::f64::consts::FRAC_PI_3 * f64::from(i)).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_3 * f64::from(i));
         points.push([cos, sin, 0.0]);
     }
     points.extend([[0.5, 0.0, -0.8], [-0.5, 0.0, -0.8], [0.0, 0.0, -2.0]]);

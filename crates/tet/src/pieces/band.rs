@@ -33,8 +33,8 @@ fn sources(surface: &TriMesh, plane: Plane, slope: f64) -> Vec<(Point3, f64)> {
     for (p, h) in surface.points.iter().zip(vertex_sizes(surface)).filter(|(_, h)| *h > 0.0) {
         let length = h + slope * plane.distance(p).abs();
         let on = plane.project(p);
-        let level = (0.5 * length).log2().ceil() as i32;
-        let side = f64::from(level).exp2();
+        let level = libm::log2(0.5 * length).ceil() as i32;
+        let side = libm::exp2(f64::from(level));
         if seen.insert((level, [on.x, on.y, on.z].map(|x| (x / side).floor() as i32))) {
             kept.push((on, length));
         }

@@ -248,5 +248,5 @@ fn angle(points: &[Point3], [a, b]: [u32; 2], f: [u32; 3], g: [u32; 3]) -> f64 {
     let is_forward = (0..3).any(|i| [f[i], f[(i + 1) % 3]] == [a, b]);
     let [start, end] = if is_forward { [a, b] } else { [b, a] }.map(|v| points[v as usize]);
     let along = (end - start).try_normalize(0.0).unwrap_or_default();
-    PI - n.cross(&m).dot(&along).atan2(n.dot(&m))
+    PI - libm::atan2(n.cross(&m).dot(&along), n.dot(&m))
 }

@@ -25,7 +25,7 @@ fn ball_with_holes(holes: u32) -> TriMesh {
         let turn = f64::from(i) * 2.4;
         let height = 2.0 * (2.0 * (f64::from(i) + 0.5) / f64::from(holes) - 1.0);
         let flat = (9.0 - height * height).sqrt() * if i % 2 == 0 { 0.9 } else { 0.45 };
-        add(0.3, Vec3::new(flat * turn.cos(), flat * turn.sin(), height), true);
+        add(0.3, Vec3::new(flat * libm::cos(turn), flat * libm::sin(turn), height), true);
     }
     all
 }

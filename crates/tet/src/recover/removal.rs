@@ -166,7 +166,9 @@ mod tests {
         let first = points.len();
         for k in 0..40 {
             let w = f64::from(k);
-            points.push(anastomesh_mesh::geometry::Point3::new(w.sin(), (1.7 * w).cos(), (0.6 * w).sin()) * 0.4);
+            points.push(
+                anastomesh_mesh::geometry::Point3::new(libm::sin(w), libm::cos(1.7 * w), libm::sin(0.6 * w)) * 0.4,
+            );
         }
         let mut c = crate::delaunay::delaunay(&points).unwrap();
         let volume = |c: &Complex| c.real_tets().map(|t| c.orient(&c.verts(t))).sum::<f64>();
@@ -184,7 +186,7 @@ mod tests {
         for (z, turn) in [(0.0, 0.0), (1.0, -0.5_f64)] {
             for i in 0..3 {
                 let w = f64::from(i) / 3.0 * std::f64::consts::TAU + turn;
-                surface.points.push(anastomesh_mesh::geometry::Point3::new(w.cos(), w.sin(), z));
+                surface.points.push(anastomesh_mesh::geometry::Point3::new(libm::cos(w), libm::sin(w), z));
             }
         }
         surface.triangles =

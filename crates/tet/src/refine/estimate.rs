@@ -29,7 +29,7 @@ pub fn estimate_tets(tree: &SizeTree, wall: &Wall) -> f64 {
 
 /// As [`estimate_tets`], for points of the size field that are selected by a grading.
 pub fn estimate_spaced(tree: &SizeTree, wall: &Wall, grading: &Grading) -> f64 {
-    let per_length = PER_LENGTH * (STEEPER * grading.slope()).exp();
+    let per_length = PER_LENGTH * libm::exp(STEEPER * grading.slope());
     let per_cube = |center: &Point3, side: f64| (per_length * (side / grading.at(center)).powi(3)).min(PER_CUBE);
     estimate_with(tree, wall, &per_cube)
 }

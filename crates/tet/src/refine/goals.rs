@@ -80,7 +80,7 @@ impl Goals<'_> {
         let volume = here.min(self.bounds.max_volume.unwrap_or(f64::INFINITY));
         if volume < f64::INFINITY {
             let own = (p[1] - p[0]).cross(&(p[2] - p[0])).dot(&(p[3] - p[0])) / 6.0;
-            note((own / volume).cbrt(), 0.5 * (REGULAR * volume).cbrt(), false);
+            note(libm::cbrt(own / volume), 0.5 * libm::cbrt(REGULAR * volume), false);
         }
         let here = region.and_then(|r| r.size.as_deref());
         if self.size.is_some() || here.is_some() {

@@ -159,7 +159,7 @@ mod tests {
         let lengths: Vec<f64> = surface.points.iter().map(|p| 0.02 + 0.1 * p.z.max(0.0)).collect();
         let grading = Grading::new([(&surface.points[..], &lengths[..])], 0.4, f64::INFINITY);
         for i in 0..200 {
-            let part = |k: u32| (f64::from(i) * 0.37 * f64::from(k)).sin() * 2.0;
+            let part = |k: u32| libm::sin(f64::from(i) * 0.37 * f64::from(k)) * 2.0;
             let p = Point3::new(part(1), part(2), part(3));
             let all = surface.points.iter().zip(&lengths).map(|(q, h)| h + 0.4 * (p - q).norm());
             let exact = all.fold(f64::INFINITY, f64::min);

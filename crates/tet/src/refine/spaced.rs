@@ -35,11 +35,11 @@ struct Balls {
 
 /// Level of balls with a radius.
 fn level_of(radius: f64) -> i32 {
-    (2.0 * radius).log2().ceil() as i32
+    libm::log2(2.0 * radius).ceil() as i32
 }
 
 fn cube_of(p: &Point3, level: i32) -> [i32; 3] {
-    let side = f64::from(level).exp2();
+    let side = libm::exp2(f64::from(level));
     [p.x, p.y, p.z].map(|x| (x / side).floor() as i32)
 }
 
@@ -55,7 +55,7 @@ impl Balls {
     /// True if a ball of one of these levels contains a point.
     fn contain(&self, p: &Point3, levels: std::ops::RangeInclusive<i32>) -> bool {
         levels.into_iter().any(|level| {
-            let quarter = 0.5 * f64::from(level).exp2();
+            let quarter = 0.5 * libm::exp2(f64::from(level));
             // Balls reach half a side, so that two cubes per axis suffice.
             let low = cube_of(&(p - Vec3::repeat(quarter)), level);
             (0..8).any(|n| {

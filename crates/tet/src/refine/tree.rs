@@ -240,11 +240,11 @@ impl SizeTree {
             let (mut sum, mut least) = (0.0, f64::INFINITY);
             for &v in group.iter() {
                 let h = wanted[v as usize];
-                sum += h.ln();
+                sum += libm::log(h);
                 least = h.min(least);
             }
             let size = self.side(level) * self.per_side;
-            let mean = (sum / group.len() as f64).exp();
+            let mean = libm::exp(sum / group.len() as f64);
             if level < self.levels() && (size > SPLIT_ABOVE * mean || size > SPLIT_ABOVE_LEAST * least) {
                 let cube = self.cube_at(&points[group[0] as usize], level);
                 self.insert(level, cube);
@@ -418,13 +418,13 @@ fn coarsest(surface: &TriMesh, sizes: &[f64]) -> f64 {
 fn middle<'a>(sizes: impl Iterator<Item = &'a f64>) -> Option<f64> {
     let (mut x, mut y, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
     for &h in sizes.filter(|&&h| h > 0.0 && h.is_finite()) {
-        let (sine, cosine) = (TAU * h.log2()).sin_cos();
+        let (sine, cosine) = libm::sincos(TAU * libm::log2(h));
         (x, y) = (x + cosine, y + sine);
-        (sum, count) = (sum + h.log2(), count + 1.0);
+        (sum, count) = (sum + libm::log2(h), count + 1.0);
     }
     if count == 0.0 {
         return None;
     }
-    let (mean, phase) = (sum / count, y.atan2(x) / TAU);
-    Some((phase + (mean - phase).round()).exp2())
+    let (mean, phase) = (sum / count, libm::atan2(y, x) / TAU);
+    Some(libm::exp2(phase + (mean - phase).round()))
 }

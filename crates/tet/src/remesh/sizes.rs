@@ -73,7 +73,7 @@ fn limit_by_curvature(r: &Reference, tolerance: f64, wanted: &mut [f64]) {
     for &([a, b], [t, u]) in &r.features.smooth {
         let length = (surface.points[a as usize] - surface.points[b as usize]).norm();
         let height = 2.0 * area(r.corners(t)).min(area(r.corners(u))) / length;
-        let angle = r.normals[t as usize].dot(&r.normals[u as usize]).clamp(-1.0, 1.0).acos();
+        let angle = libm::acos(r.normals[t as usize].dot(&r.normals[u as usize]).clamp(-1.0, 1.0));
         let turn = angle * length;
         // Turns within less than the tolerance are noise.
         let curvature = angle / height.max(tolerance);
@@ -112,7 +112,7 @@ fn limit_by_lines(r: &Reference, tolerance: f64, wanted: &mut [f64]) {
         let [before, after] = [points[v] - points[a as usize], points[b as usize] - points[v]];
         let mean = f64::midpoint(before.norm(), after.norm());
         let cosine = before.dot(&after) / (before.norm() * after.norm()).max(f64::MIN_POSITIVE);
-        let turn = cosine.clamp(-1.0, 1.0).acos();
+        let turn = libm::acos(cosine.clamp(-1.0, 1.0));
         if turn > 0.0 {
             *length = length.min((8.0 * tolerance * mean / turn).sqrt().max(mean).max(LEAST * tolerance));
         }

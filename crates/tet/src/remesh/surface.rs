@@ -324,7 +324,7 @@ fn edges_of<'a>(triangles: impl Iterator<Item = &'a [u32; 3]>) -> Vec<[u32; 2]> 
 pub(super) fn smallest_angle([a, b, c]: [&Point3; 3]) -> f64 {
     let angle = |p: &Point3, q: &Point3, r: &Point3| {
         let (u, v) = (q - p, r - p);
-        u.cross(&v).norm().atan2(u.dot(&v))
+        libm::atan2(u.cross(&v).norm(), u.dot(&v))
     };
     angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b))
 }

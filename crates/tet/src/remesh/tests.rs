@@ -66,8 +66,8 @@ fn swept(n: u32, m: u32, is_torus: bool, at: impl Fn(f64, f64) -> Point3) -> Tri
 fn torus() -> TriMesh {
     swept(60, 10, true, |u, v| {
         let ([s, c], [t, d]) = ([u, u].map(|u| u * std::f64::consts::TAU), [v, v].map(|v| v * std::f64::consts::TAU));
-        let r = 2.0 + 0.5 * d.cos();
-        Point3::new(r * c.cos(), r * s.sin(), 0.5 * t.sin())
+        let r = 2.0 + 0.5 * libm::cos(d);
+        Point3::new(r * libm::cos(c), r * libm::sin(s), 0.5 * libm::sin(t))
     })
 }
 
@@ -75,7 +75,7 @@ fn torus() -> TriMesh {
 fn cylinder() -> Plc {
     let n = 40;
     let mut surface = swept(n, 1, false, |u, v| {
-        let (s, c) = (u * std::f64::consts::TAU).sin_cos();
+        let (s, c) = libm::sincos(u * std::f64::consts::TAU);
         Point3::new(c, s, 5.0 * v)
     });
     let sides = surface.triangles.len();

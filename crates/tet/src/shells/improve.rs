@@ -117,7 +117,7 @@ impl<'a> Improver<'a> {
         let other = way.cross(&side);
         let beside = |i: u32| {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(TURNS);
-            (side * angle.cos() + other * angle.sin()) * step
+            (side * libm::cos(angle) + other * libm::sin(angle)) * step
         };
         let shifts: Vec<Vec3> = (0..TURNS).map(beside).collect();
         let may_be_at = |place: &Point3| match self.sides.at(v) {

@@ -9,7 +9,11 @@ fn cylinder(length: f64, n: u32, rings: u32) -> (TriMesh, Vec<Option<u32>>) {
     for ring in 0..rings {
         for i in 0..n {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
-            points.push(Point3::new(angle.cos(), angle.sin(), length * f64::from(ring) / f64::from(rings - 1)));
+            points.push(Point3::new(
+                libm::cos(angle),
+                libm::sin(angle),
+                length * f64::from(ring) / f64::from(rings - 1),
+            ));
         }
     }
     let (bottom, top) = (points.len() as u32, points.len() as u32 + 1);

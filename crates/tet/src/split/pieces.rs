@@ -83,7 +83,7 @@ impl Pieces {
     pub(super) fn dividing(&self, e: [u32; 2]) -> Point3 {
         let Some(&from) = e.iter().find(|&&v| (v as usize) < self.given_points) else { return self.middle(e) };
         let length = self.length(e);
-        let distance = (length / 3.0).log2().ceil().exp2();
+        let distance = libm::exp2(libm::log2(length / 3.0).ceil());
         if self.is_flat(e) || !(distance > 0.0 && distance < length) {
             return self.middle(e);
         }

@@ -259,7 +259,7 @@ mod tests {
     /// Prism of a polygon around the z axis, whose faces are fans; the bottom, the top and each side have their marker.
     fn prism(angles: &[f64], height: f64) -> Plc {
         let n = angles.len() as u32;
-        let ring = |z: f64| angles.iter().map(move |a| Point3::new(a.cos(), a.sin(), z));
+        let ring = |z: f64| angles.iter().map(move |&a| Point3::new(libm::cos(a), libm::sin(a), z));
         let points = ring(0.0).chain(ring(height)).collect();
         let mut triangles = Vec::new();
         let mut markers = Vec::new();

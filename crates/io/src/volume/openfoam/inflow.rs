@@ -25,7 +25,7 @@ pub(super) fn is_mapped(flow: &Flow) -> bool {
 
 /// Factor of the flow rate in a ramp from rest, as OpenFOAM's `halfCosineRamp`.
 fn ramp(time: f64, transient: &Transient) -> f64 {
-    if time >= transient.ramp { 1.0 } else { 0.5 * (1.0 - (PI * (time / transient.ramp).max(0.0)).cos()) }
+    if time >= transient.ramp { 1.0 } else { 0.5 * (1.0 - libm::cos(PI * (time / transient.ramp).max(0.0))) }
 }
 
 /// Entries of all inlets in `0/U`.

@@ -154,7 +154,7 @@ mod tests {
         let mut faces = InletFaces::default();
         let point = |ring: i32, sector: i32| {
             let (r, angle) = (f64::from(ring) / f64::from(rings), 2.0 * PI * f64::from(sector) / f64::from(sectors));
-            Point3::new(r * angle.cos(), r * angle.sin(), 0.0)
+            Point3::new(r * libm::cos(angle), r * libm::sin(angle), 0.0)
         };
         for (ring, sector) in (0..rings).flat_map(|ring| (0..sectors).map(move |sector| (ring, sector))) {
             let [a, b] = [point(ring, sector), point(ring + 1, sector)];

@@ -100,7 +100,7 @@ fn projections(parts: &[&Part]) -> String {
 
 /// Power of ten from SI to the units of the case, found by the viscosity: pascal and poise differ by ten.
 fn pressure_unit(flow: &Flow) -> f64 {
-    let power = (flow.viscosity / BLOOD_VISCOSITY).log10().round();
+    let power = libm::log10(flow.viscosity / BLOOD_VISCOSITY).round();
     if power.is_finite() { 10_f64.powi(power as i32) } else { 1.0 }
 }
 

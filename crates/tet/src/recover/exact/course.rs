@@ -115,7 +115,7 @@ impl Course {
     /// Weight of a position, with as few bits as accuracy allows, to keep exact arithmetic short.
     pub(super) fn weight(place: &Deepest) -> u128 {
         // Resolution of 1/16 of the depth, 10 to 52 bits.
-        let bits = (-(place.depth.max(1e-15) / 16.0).log2()).ceil().clamp(10.0, 52.0) as u32;
+        let bits = (-libm::log2(place.depth.max(1e-15) / 16.0)).ceil().clamp(10.0, 52.0) as u32;
         let steps = (place.share.clamp(0.0, 1.0) * (1_u64 << bits) as f64).round() as u128;
         steps * (OnTriangle::ONE >> bits)
     }

@@ -228,7 +228,7 @@ mod tests {
         let angle = 1e-7_f64;
         let planes = [
             (Vec3::y(), 0.0),
-            (Vec3::new(angle.sin(), -angle.cos(), 0.0), 0.0),
+            (Vec3::new(libm::sin(angle), -libm::cos(angle), 0.0), 0.0),
             (-Vec3::x(), 1.0),
             (Vec3::z(), 0.5),
             (-Vec3::z(), 0.5),

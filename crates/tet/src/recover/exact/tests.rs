@@ -50,7 +50,7 @@ fn twisted_prism(n: u32, turn: f64, height: f64) -> TriMesh {
     for (z, turn) in [(0.0, 0.0), (height, turn)] {
         for i in 0..n {
             let w = f64::from(i) / f64::from(n) * std::f64::consts::TAU + turn;
-            s.points.push(Point3::new(w.cos(), w.sin(), z));
+            s.points.push(Point3::new(libm::cos(w), libm::sin(w), z));
         }
     }
     for i in 0..n {
