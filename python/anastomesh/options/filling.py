@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Annotated, TypedDict
 
 from ._option import Option
+from .common import StrPath
 
 
 class ComplexOptions(TypedDict, total=False):
@@ -29,6 +30,10 @@ class FillingOptions(TypedDict, total=False):
     min_dihedral: Annotated[float | None, Option("Minimum dihedral angle in degrees, where the boundary allows it")]
     max_volume: Annotated[float | None, Option("Maximum volume of a tetrahedron; a mesh that exceeds it is an InvalidError")]
     size: Annotated[float | None, Option("Maximum edge length inside; if absent, any that the growth gives")]
+    sizes_from: Annotated[
+        StrPath | None, Option("Earlier mesh (.vtu) with maximum edge lengths; each place has that of the nearest point")
+    ]
+    array: Annotated[str | None, Option("Array of sizes_from: an edge length for each point or each cell")]
     growth: Annotated[float, Option("Growth of edge lengths per layer of tetrahedra, away from the surface; at least 1.1", 2)]
     uniform: Annotated[bool, Option("Fill the inside evenly with the mean edge length of the surface", False)]
     max_tets: Annotated[int, Option("Refuse meshes that would have more tetrahedra", 40_000_000)]

@@ -3,6 +3,7 @@
 from typing import Annotated, TypedDict
 
 from ._option import Option
+from .common import StrPath
 
 
 class ResolutionOptions(TypedDict, total=False):
@@ -18,6 +19,10 @@ class ResolutionOptions(TypedDict, total=False):
         float | str | None,
         Option("Factor for edge lengths at forks, from 0.25 to 1; or the name of an array on the network's nodes"),
     ]
+    sizes_from: Annotated[
+        StrPath | None, Option("Earlier mesh (.vtu) with edge lengths: edges are shorter where it has less than the resolution")
+    ]
+    array: Annotated[str | None, Option("Array of sizes_from: an edge length for each point or each cell")]
     memory: Annotated[str | None, Option("Memory limit with its unit, as '500MB'; 2GiB if absent")]
     refine: Annotated[
         int | bool,
