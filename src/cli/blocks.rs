@@ -141,10 +141,11 @@ impl BlockArgs {
     pub fn typed(&self, is_refined: bool) -> String {
         let refine = self.refine.filter(|_| is_refined).map_or_else(String::new, |n| format!(" --refine {n}"));
         let stretch = if self.stretch == 1.0 { String::new() } else { format!(" --stretch {}", self.stretch) };
-        let mut size = self.size_at.as_ref().map_or_else(String::new, |size| format!(" --size-at {size}"));
-        if let (Some(path), Some(array)) = (&self.sizes_from, &self.array) {
-            size += &format!(" --sizes-from {} --array {array}", path.display());
-        }
+        let size = match (&self.size_at, &self.sizes_from, &self.array) {
+            (Some(size), ..) => format!(" --size-at {size}"),
+            (None, Some(path), Some(array)) => format!(" --sizes-from {} --array {array}", path.display()),
+            _ => String::new(),
+        };
         format!("--rho {} --follow {}{stretch}{size}{refine}", self.rho, self.follow)
     }
 }

@@ -51,10 +51,10 @@ fn of_field(stations: &[FineStation], skeleton: &Skeleton, rho: f64) -> String {
     let Some(range) = range(&factors) else {
         return format!("edges are at most as long as requested everywhere with rho {rho}");
     };
-    let mut text = format!("edge length at {} multiplied by {range}", counted(stations.len(), "place"));
+    let mut parts = vec![format!("edge length at {} multiplied by {range}", counted(stations.len(), "place"))];
     let below = stations.iter().filter(|station| station.asked < LEAST_SIZE).count();
     if below > 0 {
-        text += &format!("; at {below} of them the field requests less: a larger --rho gives it");
+        parts.push(format!("at {below} of them the field requests less: a larger --rho gives it"));
     }
     // Places are a radius apart.
     let tubes = (0..skeleton.edges.len() as u32).map(|edge| skeleton.tube(EdgeId(edge)));
@@ -63,9 +63,9 @@ fn of_field(stations: &[FineStation], skeleton: &Skeleton, rho: f64) -> String {
         let mut asked: Vec<f64> = stations.iter().map(|station| station.asked).collect();
         let middle = asked.len() / 2;
         let (_, median, _) = asked.select_nth_unstable_by(middle, f64::total_cmp);
-        text += &format!("; most vessels need shorter edges, which --rho {:.1} gives at less cost", rho / *median);
+        parts.push(format!("most vessels need shorter edges, which --rho {:.1} gives at less cost", rho / *median));
     }
-    text
+    parts.join("; ")
 }
 
 /// Range of numbers as `0.5` or `0.3 to 0.9`; `None` without numbers.
