@@ -61,13 +61,19 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
     let call = random.pick(&own);
     let errors = CALLS.iter().find(|(known, _)| *known == name).map_or(&["EIO"][..], |(_, errors)| errors);
     let error = random.pick(errors);
-    let mut command = strace(trial, "/dev/null");
+    let log = trial.folder.with_extension("injected");
+    let mut command = strace(trial, &log.to_string_lossy());
     command.args(["-e", &format!("inject={name}:error={error}:when={}", call.number)]);
     command.arg(trial.mesher).args(trial.job.arguments());
     let run = run_command(command, trial.folder, LIMITS)?;
     let may_leave = ["unlink", "rmdir"].contains(&name);
     let outcome = match run.ended {
-        Ended::Code(code) => trial.after_code(code, &run.stderr, may_leave)?,
+        Ended::Code(code) => match trial.after_code(code, &run.stderr, may_leave)? {
+            Outcome::Finding { sort, .. } if sort == "no message" && hits_stderr(&fs::read_to_string(&log)?) => {
+                Outcome::Typed { code, message: "none: writing to stderr failed, too".into() }
+            }
+            outcome => outcome,
+        },
         _ => finding("signal", format!("{}: {:?} {}", trial.job.line(), run.ended, run.stderr.trim())),
     };
     let outcome = match trial.again(outcome)? {
@@ -75,6 +81,11 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
         other => other,
     };
     Ok(Judged { outcome, seconds: run.seconds, stderr: run.stderr })
+}
+
+/// True if a write to stderr failed. Calls are counted in each thread, so a fault may meet a second call.
+fn hits_stderr(log: &str) -> bool {
+    log.lines().any(|line| line.contains("write(2<") && line.contains("(INJECTED)"))
 }
 
 fn strace(trial: &Trial, log: &str) -> Command {
