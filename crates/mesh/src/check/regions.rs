@@ -173,8 +173,7 @@ impl<'a> RegionCheck<'a> {
         tally.done()
     }
 
-    /// Checks the boundary of each region as that of a mesh, and counts the places where it touches itself. A boundary of
-    /// tetrahedra is closed, so that it can only fail there.
+    /// Checks the boundary of each region as that of a mesh, and counts the places where it touches itself.
     fn boundaries(&mut self, is_expected: bool) -> [LineResult; 2] {
         let mut manifold = Tally::new(Line::RegionBoundaries);
         let mut intersections = Tally::new(Line::RegionIntersections);

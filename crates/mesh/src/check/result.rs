@@ -360,8 +360,8 @@ impl LineResult {
         Self { outcome: Outcome::NotChecked(why), ..Tally::new(line).done() }
     }
 
-    /// A failed condition counts as not checked: a complex and its regions may touch themselves. Boundaries of tetrahedra are closed, so that
-    /// a manifold condition can only fail there.
+    /// A failed condition counts as not checked: a complex and its regions may touch themselves. Boundaries of
+    /// tetrahedra are closed, so that a manifold condition can only fail there.
     pub(super) fn may_touch(self) -> Self {
         if self.fails() { Self::skipped(self.line, Skipped::MayTouch) } else { self }
     }
