@@ -24,7 +24,7 @@ use crate::report::verdict::Verdict;
 use anastomesh_domain::{DomainError, Embedding, PiecesError};
 use anastomesh_io::network::{NetworkFile, NodeNames};
 use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
-use anastomesh_io::{ensure_text_writable, write_bytes};
+use anastomesh_io::{bytes_to_commit, ensure_text_writable};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -129,14 +129,17 @@ impl EmbedRun<'_> {
             .grid(self.grid.options())
             .parts(self.format.parts)
             .remark(&remark as &dyn Fn(&str));
+        // Complete before the mesh appears, so that a full disk cannot leave a mesh beside the table of an earlier one.
+        let (path, text) = (self.table(), table(pieces, &vessels.network, &vessels.edges, &vessels.names));
+        let unwritable = |e: &dyn Display| Failure::unwritable(&path, e);
+        let text = text.map_err(|e| unwritable(&e))?;
+        let table = bytes_to_commit(&path, &text).map_err(|e| unwritable(&e))?;
         let write = || write_mesh_with(&how, self.output, mesh, &notes, bars);
         let failed = |e: &dyn Display| {
             if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
         };
         bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
-        let path = self.table();
-        let text = table(pieces, &vessels.network, &vessels.edges, &vessels.names);
-        text.and_then(|text| Ok(write_bytes(&path, &text)?)).map_err(|e| Failure::unwritable(&path, &e))?;
+        table.commit().map_err(|e| unwritable(&e))?;
         let (input, format) = (&self.network.network, self.format.of(self.output)?);
         self.certificate.write(&Certified { input, mesh: self.output, format, options: &options, check })?;
         let (verdict, summary) = (Verdict::of_check(check), EmbedSummary::of(made, &vessels.network));

@@ -42,7 +42,7 @@ use anastomesh_domain::{DomainError, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
 use anastomesh_io::network::{NodeNames, ensure_network_writable};
 use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
-use anastomesh_io::{AtomicFile, ensure_text_writable, text_to_commit};
+use anastomesh_io::{AtomicFile, bytes_to_commit, ensure_text_writable};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -83,7 +83,7 @@ pub struct Args {
     frozen_joints: bool,
     #[command(flatten)]
     work: WorkArgs,
-    /// Write the refined network
+    /// Write the refined network. It is written before meshing, so also if that fails
     #[arg(long, help_heading = "Run", value_name = "NETWORK.vtp", requires = "refine")]
     refined: Option<PathBuf>,
     /// Inlet node, by its name or number in the file; repeatable (default: the roots of the file, or else the widest
@@ -530,7 +530,7 @@ impl Args {
     /// Writes the table of inlets and outlets, which still has to be moved to its path.
     fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<AtomicFile, Failure> {
         let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
-        text_to_commit(&self.table(), &text).map_err(|e| self.no_table(&e))
+        bytes_to_commit(&self.table(), text.as_bytes()).map_err(|e| self.no_table(&e))
     }
 
     /// Path of the table of inlets and outlets.

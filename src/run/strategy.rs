@@ -95,6 +95,12 @@ pub(super) struct Failure {
 }
 
 impl Failure {
+    /// True if no strategy follows: the run was cancelled, or blocks cannot be stored. Another strategy would give a mesh that
+    /// depends on faults of the disk.
+    fn stops(&self) -> bool {
+        matches!(self.error, RunError::Cancelled | RunError::Store(_))
+    }
+
     /// True if the limit on memory is exceeded even by a refined network. `lengthens`: refinement lengthens vessels.
     fn is_final(&self, lengthens: impl FnOnce() -> bool) -> bool {
         let RunError::TooLarge(error) = &self.error else { return false };
@@ -151,9 +157,8 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
             meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
             return Ok(candidate);
         }
-        Some(Err(failure @ Failure { error: RunError::Cancelled, .. })) => return Err(failure.into_error()),
         // Blocks become smaller only if vessels are lengthened, so that more of them can be cut.
-        Some(Err(failure)) if failure.is_final(|| meshing.lengthens(networks)) => {
+        Some(Err(failure)) if failure.stops() || failure.is_final(|| meshing.lengthens(networks)) => {
             return Err(failure.into_error());
         }
         other => other.and_then(Result::ok),
@@ -191,7 +196,7 @@ fn planned<'a>(networks: Networks, unrefined: bool, meshing: &mut Meshing<'a, '_
                 meshing.progress.note(&kept(strategy, fault));
                 return Ok(candidate);
             }
-            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure),
+            Err(failure) if failure.stops() => return Err(failure),
             Ok(_) | Err(_) => {}
         }
     }
@@ -220,7 +225,7 @@ fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candi
                     .note(&format!("walls that almost touch intersected: meshed with finer edges, rho {rho}"));
                 return Ok(candidate);
             }
-            Err(failure @ Failure { error: RunError::Cancelled, .. }) => return Err(failure.into_error()),
+            Err(failure) if failure.stops() => return Err(failure.into_error()),
             Ok(_) | Err(_) => {}
         }
     }
@@ -287,7 +292,7 @@ impl<'a> Meshing<'a, '_> {
         }
         let refined = refine(&networks.prepared, &params.freedom(Freedom::Measured), self.progress)?;
         match self.attempt(Strategy::OverlapsMoved, networks.again(Some(refined))) {
-            Err(failure @ Failure { error: RunError::Cancelled, .. }) => Err(failure.into_error()),
+            Err(failure) if failure.stops() => Err(failure.into_error()),
             Ok(candidate) if self.attempts[candidate.attempt].fault.is_none() => Ok(Some(candidate)),
             Ok(_) | Err(_) => Ok(None),
         }

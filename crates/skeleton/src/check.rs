@@ -1,6 +1,6 @@
 //! Invariants of a cleaned skeleton.
 
-use super::{Edge, EdgeId, LARGEST, NodeId, Skeleton, SkeletonError};
+use super::{Edge, EdgeId, LARGEST, NodeId, Skeleton, SkeletonError, is_usable_radius};
 
 impl Skeleton {
     /// Checks that ids exist, numbers are finite, radii positive, edges distinct and not empty, and nodes not isolated.
@@ -51,7 +51,7 @@ impl Skeleton {
             if !node.position.iter().all(|x| x.abs() < LARGEST) {
                 return Err(SkeletonError::BadPosition { original: node.original, position: node.position });
             }
-            if !good_radius(node.radius) {
+            if !is_usable_radius(node.radius) {
                 return Err(SkeletonError::BadNodeRadius { original: node.original, radius: node.radius });
             }
         }
@@ -60,14 +60,10 @@ impl Skeleton {
             if let Some(&node) = nodes.iter().find(|n| n.index() >= self.nodes.len()) {
                 return Err(SkeletonError::UnknownNode { edge, node, nodes: self.nodes.len() });
             }
-            if let Some(&radius) = radii.iter().find(|&&r| !good_radius(r)) {
+            if let Some(&radius) = radii.iter().find(|&&r| !is_usable_radius(r)) {
                 return Err(SkeletonError::BadEdgeRadius { edge, radius });
             }
         }
         Ok(())
     }
-}
-
-fn good_radius(radius: f64) -> bool {
-    radius > 0.0 && radius < LARGEST
 }

@@ -35,16 +35,16 @@ pub enum SkeletonError {
         /// Its position.
         position: Point3,
     },
-    /// A radius is zero, negative, infinite or NaN.
-    #[error("node {original} has the radius {radius}: radii must be finite and positive")]
+    /// A radius of a node is not [usable](is_usable_radius).
+    #[error("node {original} has the radius {radius:?}: radii must be between {SMALLEST:e} and {LARGEST:e}")]
     BadNodeRadius {
         /// The node, as numbered in the file (from 0).
         original: u32,
         /// Its radius.
         radius: f64,
     },
-    /// A radius of an edge is zero, negative, infinite or NaN.
-    #[error("edge {} has the radius {radius}: radii must be finite and positive", edge.0)]
+    /// A radius of an edge is not [usable](is_usable_radius).
+    #[error("edge {} has the radius {radius:?}: radii must be between {SMALLEST:e} and {LARGEST:e}", edge.0)]
     BadEdgeRadius {
         /// The edge.
         edge: EdgeId,
@@ -73,3 +73,11 @@ pub enum SkeletonError {
 
 /// Upper bound of coordinates, so that no product of five of them overflows in the predicates.
 pub const LARGEST: f64 = 1e50;
+
+/// Lower bound of radii, so that no product of five of them is rounded to zero.
+pub const SMALLEST: f64 = 1e-50;
+
+/// True if a radius is large enough and small enough for computation: between [`SMALLEST`] and [`LARGEST`].
+pub fn is_usable_radius(radius: f64) -> bool {
+    (SMALLEST..LARGEST).contains(&radius)
+}

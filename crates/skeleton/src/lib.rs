@@ -58,7 +58,7 @@ pub use crotch::{CrotchRule, CrotchSearch};
 pub use crowding::CrowdedTerminals;
 pub use cuttability::{ANGLE_MARGIN, CONNECTOR_ROOM, CUT_DISTANCE, CutRules, separation};
 pub use elements::{BranchId, Edge, EdgeId, Node, NodeId, Skeleton};
-pub use error::{LARGEST, SkeletonError};
+pub use error::{LARGEST, SMALLEST, SkeletonError, is_usable_radius};
 pub use extend::Extended;
 pub use fine_place::{FinePlace, LEAST_SIZE};
 pub use graph::{Adjacency, Component, Components};

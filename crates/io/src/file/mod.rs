@@ -12,4 +12,4 @@ pub(super) use atomic::{is_hidden_name, locked, make_hidden, remove_left};
 pub use error::FileError;
 pub(super) use folder::AtomicFolder;
 pub(super) use whole::{Writing, by_extension, ensure_sound, extension, read_bytes, write_all_whole, write_whole};
-pub use whole::{ensure_text_writable, text_to_commit, write_bytes, write_text};
+pub use whole::{bytes_to_commit, ensure_text_writable, write_bytes, write_text};

@@ -35,13 +35,13 @@ pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     write_bytes(path, text.as_bytes())
 }
 
-/// Writes a text file under a temporary name, completely and to the disk. [`AtomicFile::commit`] moves it to its path.
+/// Writes a file with these bytes under a temporary name, completely and to the disk. [`AtomicFile::commit`] moves it to its path.
 ///
 /// # Errors
 /// The operating system reports an error.
-pub fn text_to_commit(path: &Path, text: &str) -> io::Result<AtomicFile> {
+pub fn bytes_to_commit(path: &Path, bytes: &[u8]) -> io::Result<AtomicFile> {
     let mut file = AtomicFile::create(path)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(bytes)?;
     file.complete()?;
     Ok(file)
 }

@@ -1,7 +1,7 @@
 //! Replacement of implausible radii by values from neighbours.
 
 use anastomesh_mesh::geometry::{DisjointSets, Total, place_key};
-use anastomesh_skeleton::{LARGEST, NodeId, Skeleton, SkeletonError};
+use anastomesh_skeleton::{NodeId, Skeleton, SkeletonError, is_usable_radius};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 use std::cmp::Reverse;
@@ -78,16 +78,12 @@ pub(super) fn fill(raw: &Skeleton) -> Result<(Skeleton, Vec<FilledRadius>), Skel
             let node = edge.nodes[end].index();
             // An edge with the radius of its node follows the node.
             let same = edge.radii[end] == raw.nodes[node].radius;
-            if !good(edge.radii[end]) || faults[node].is_some() && same {
+            if !is_usable_radius(edge.radii[end]) || faults[node].is_some() && same {
                 edge.radii[end] = filled[places.of_node[node] as usize];
             }
         }
     }
     Ok((network, report))
-}
-
-fn good(radius: f64) -> bool {
-    radius > 0.0 && radius < LARGEST
 }
 
 fn check_all_but_radii(raw: &Skeleton) -> Result<(), SkeletonError> {
@@ -153,7 +149,7 @@ impl Places {
     fn faults(&self, raw: &Skeleton) -> Vec<Option<RadiusDefect>> {
         let mut at = vec![0.0_f64; self.count];
         for (node, &place) in raw.nodes.iter().zip(&self.of_node) {
-            if good(node.radius) {
+            if is_usable_radius(node.radius) {
                 at[place as usize] = at[place as usize].max(node.radius);
             }
         }
@@ -170,7 +166,7 @@ impl Places {
             *radius = 0.0;
         }
         let fault = |(node, &place): (&anastomesh_skeleton::Node, &u32)| match node.radius {
-            r if !good(r) => Some(RadiusDefect::Missing),
+            r if !is_usable_radius(r) => Some(RadiusDefect::Missing),
             _ if all[place as usize] || self.is_dip(place, &told) => Some(RadiusDefect::Absurd),
             _ => None,
         };
@@ -235,7 +231,7 @@ impl Places {
             weights += weight;
         }
         let mean = sum / weights;
-        good(mean).then_some(mean)
+        is_usable_radius(mean).then_some(mean)
     }
 
     /// Nearest known radius along the vessels.

@@ -33,6 +33,9 @@ pub enum Place {
     Broken(String),
 }
 
+/// Files that a run writes before its other output, and that stay if it fails later.
+const EARLY: [&str; 1] = ["refined.vtp"];
+
 /// Compares files with both versions. Names of neither version are left to the caller.
 pub fn place(found: &Files, earlier: &Files, new: &Files) -> Place {
     for (name, bytes) in found {
@@ -43,11 +46,13 @@ pub fn place(found: &Files, earlier: &Files, new: &Files) -> Place {
         }
     }
     let is_as = |files: &Files| files.iter().all(|(name, bytes)| found.get(name) == Some(bytes));
-    let without_new = found.keys().all(|name| earlier.contains_key(name) || !new.contains_key(name));
+    let is_early = |name: &String| EARLY.contains(&name.as_str());
+    let is_kept = |(name, bytes)| found.get(name) == Some(bytes) || is_early(name);
+    let is_known = |name| earlier.contains_key(name) || !new.contains_key(name) || is_early(name);
     if is_as(new) {
         return Place::New;
     }
-    if is_as(earlier) && without_new {
+    if earlier.iter().all(is_kept) && found.keys().all(is_known) {
         return Place::Earlier;
     }
     if let Some(name) = earlier.keys().find(|name| !found.contains_key(*name)) {
@@ -146,6 +151,9 @@ mod tests {
         assert!(matches!(place(&files(&[("a", "1")]), &old, &new), Place::Broken(_)));
         assert_eq!(place(&files(&[]), &files(&[]), &new), Place::Earlier);
         assert!(matches!(place(&files(&[("c", "2")]), &files(&[]), &new), Place::Mixed(_)));
+        let [old, new] = ["1", "2"].map(|text| files(&[("a", text), ("refined.vtp", text)]));
+        assert_eq!(place(&files(&[("a", "1"), ("refined.vtp", "2")]), &old, &new), Place::Earlier);
+        assert!(matches!(place(&files(&[("a", "2"), ("refined.vtp", "1")]), &old, &new), Place::Mixed(_)));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Errors of SWC files.
 
 use anastomesh_mesh::units::counted;
-use anastomesh_skeleton::LARGEST;
+use anastomesh_skeleton::{LARGEST, SMALLEST};
 
 /// Errors of an SWC file. Lines are numbered from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -41,9 +41,10 @@ pub enum SwcError {
         /// Value found.
         value: f64,
     },
-    /// A radius is zero, negative, infinite or NaN.
+    /// A radius is zero, negative, infinite, NaN, or too small or large for computation.
     #[error(
-        "line {line}: node {id} has the radius {radius}; radii must be finite and positive: give the radius of the vessel"
+        "line {line}: node {id} has the radius {radius:?}; radii must be between {SMALLEST:e} and {LARGEST:e}: give the radius of the \
+         vessel"
     )]
     BadRadius {
         /// Line of the file, from 1.

@@ -3,7 +3,7 @@
 use super::error::SwcError;
 use crate::network::content::{NetworkFile, NetworkOptions, NodeNames};
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_skeleton::{Edge, LARGEST, Node, NodeId, Skeleton};
+use anastomesh_skeleton::{Edge, LARGEST, Node, NodeId, Skeleton, is_usable_radius};
 use rustc_hash::FxHashMap;
 
 struct Row {
@@ -89,7 +89,7 @@ fn parse_row(line: usize, data: &str, options: &NetworkOptions) -> Result<(Row, 
         position[axis] = value;
     }
     let radius = number(line, "radius", words[5])?;
-    let usable = radius > 0.0 && radius < LARGEST;
+    let usable = is_usable_radius(radius);
     if !usable && !options.any_radii {
         return Err(SwcError::BadRadius { line, id, radius });
     }
