@@ -17,7 +17,7 @@ fn bifurcation() -> Cluster {
         cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
         let kind = EndKind::Cut { cut: CutId(i as u32), side: 0 };
         let overrun = cluster.tubes.len() as u32 - 1;
-        cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
+        cluster.ends.push(ClusterEnd { section: Section::new(origin, axis, radius), kind, overrun });
     }
     cluster
 }

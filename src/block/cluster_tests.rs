@@ -111,7 +111,7 @@ fn no_tetrahedron_has_two_faces_on_the_boundary() {
 #[test]
 fn a_shared_disc_is_the_same_from_both_sides() {
     for seed in 0..20 {
-        let along = Section { origin: Point3::new(0.3, 1e3, -7.0), axis: direction(seed), radius: 0.7 + seed as f64 };
+        let along = Section::new(Point3::new(0.3, 1e3, -7.0), direction(seed), 0.7 + seed as f64);
         let ahead = SharedDisc::at_end(&along, 0, 3.0).expect("disc");
         let behind = SharedDisc::at_end(&Section { axis: -along.axis, ..along }, 1, 3.0).expect("disc");
         assert_eq!(ahead.points, behind.points);
@@ -135,7 +135,7 @@ fn ends_beside_each_other_leave_a_wall_between() {
             cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: 1.0, rb: 1.0 });
             let overrun = cluster.tubes.len() as u32 - 1;
             let kind = cut(i as u32, (i % 2) as u8);
-            cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius: 1.0 }, kind, overrun });
+            cluster.ends.push(ClusterEnd { section: Section::new(origin, axis, 1.0), kind, overrun });
         }
         for ends in [EndStyle::Disc, EndStyle::Shared] {
             let params = BlockParams { ends, ..BlockParams::default() };
@@ -159,7 +159,7 @@ fn ends_that_take_each_others_wall_take_less() {
             cluster.tubes.push(Tube { a: origin, b: origin + axis, ra: radius, rb: radius });
             let overrun = cluster.tubes.len() as u32 - 1;
             cluster.ends.push(ClusterEnd {
-                section: Section { origin, axis, radius },
+                section: Section::new(origin, axis, radius),
                 kind: cut(i as u32, 0),
                 overrun,
             });

@@ -4,8 +4,8 @@ use super::error::NotOnBoundary;
 use anastomesh_mesh::face_key;
 use rustc_hash::FxHashMap;
 
-use super::cluster::ClusterMesh;
 use super::connector::ConnectorMesh;
+use super::contoured::ClusterMesh;
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use super::faithful::Astray;
 use super::layered::ThinLayers;
@@ -66,7 +66,7 @@ pub struct FinishedCap {
 impl FinishedCap {
     /// Cap with the terminal's number in the input network.
     pub fn disc(&self, original: u32) -> Cap {
-        let Section { origin: center, axis: normal, radius } = self.section;
+        let Section { origin: center, axis: normal, radius, .. } = self.section;
         Cap { node: original, center, normal, radius }
     }
 }

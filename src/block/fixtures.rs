@@ -45,7 +45,7 @@ pub(crate) fn direction(seed: u64) -> Vec3 {
 }
 
 pub(crate) fn section(origin: Point3, axis: Vec3, radius: f64) -> Section {
-    Section { origin, axis, radius }
+    Section::new(origin, axis, radius)
 }
 
 /// Asserts positive tetrahedra, face connectivity, and a closed manifold boundary with single fans.
@@ -110,7 +110,7 @@ pub(crate) fn star(center: Point3, arms: &[(Vec3, f64, EndKind)]) -> Cluster {
         cluster.tubes.push(Tube { a: center, b: origin, ra: radius, rb: radius });
         cluster.tubes.push(Tube { a: origin, b: origin + axis * (1.7 * radius), ra: radius, rb: radius });
         let overrun = cluster.tubes.len() as u32 - 1;
-        cluster.ends.push(ClusterEnd { section: Section { origin, axis, radius }, kind, overrun });
+        cluster.ends.push(ClusterEnd { section: Section::new(origin, axis, radius), kind, overrun });
     }
     cluster
 }

@@ -47,8 +47,12 @@ fn path(cluster: &Cluster) -> Option<Vec<Section>> {
             return None;
         }
         let axis = (ways[0] + ways[1]).normalize();
-        path.push(Section { origin: pair[1].a, axis, radius: 0.5 * (pair[0].rb + pair[1].ra) });
+        path.push(Section::new(pair[1].a, axis, 0.5 * (pair[0].rb + pair[1].ra)));
     }
     path.push(last.section);
+    // Caps have the frame of the disc at the other end.
+    let ends = [first, last].map(|end| end.section.up);
+    path[0].up = ends[0].or(ends[1]);
+    path.last_mut().into_iter().for_each(|section| section.up = ends[1].or(ends[0]));
     Some(path)
 }

@@ -9,11 +9,13 @@ mod buried;
 mod cluster;
 mod connector;
 mod connector_surface;
+mod contoured;
 mod dump;
 mod end_surface;
 mod error;
 mod faithful;
 mod finished;
+mod fork;
 mod free_ends;
 mod graph;
 mod layered;
@@ -30,10 +32,11 @@ mod wall;
 mod webs;
 
 pub(crate) use buried::buried;
+pub use cluster::mesh_cluster;
 pub(crate) use cluster::mesh_cluster_watched;
-pub use cluster::{CapFaces, ClusterMesh, mesh_cluster};
 pub use connector::{ConnectorMesh, DIVISIONS, mesh_connector, mesh_free_connector};
 pub use connector_surface::{ConnectorEnd, ConnectorFault, Division, EndVertex};
+pub use contoured::{CapFaces, ClusterMesh};
 pub use dump::{BlockDump, BlockInput, DumpError};
 pub use end_surface::{EndFault, EndSurface, StoredEnd};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
@@ -49,7 +52,7 @@ pub(crate) use connector_surface::connector_surface;
 // Parts of blocks with trimmed ends.
 #[cfg(feature = "woven")]
 pub(crate) use {
-    cluster::cut_ends,
+    contoured::cut_ends,
     end_surface::{CutEnd, CutPlane, cross, crossing, disc_rim},
 };
 

@@ -6,6 +6,8 @@ use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 #[derive(Clone, Debug)]
 pub struct AxisPath {
     stations: Vec<Station>,
+    /// First frame vector of the last section.
+    last_u: Vec3,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +45,7 @@ pub enum PathEnd {
 impl AxisPath {
     /// Creates frames along sections. Returns `None` for fewer than two sections or zero length.
     pub fn new(sections: &[Section]) -> Option<Self> {
-        let first = sections.first()?;
+        let (first, last) = (sections.first()?, sections.last()?);
         let station = |s: f64, x: &Section, u: Vec3| Station { s, origin: x.origin, axis: x.axis, u, radius: x.radius };
         let mut stations = vec![station(0.0, first, first.frame().0)];
         for next in &sections[1..] {
@@ -54,7 +56,7 @@ impl AxisPath {
                 stations.push(station(last.s + length, next, transport(&last, next.axis, step)));
             }
         }
-        (stations.len() > 1).then_some(Self { stations })
+        (stations.len() > 1).then(|| Self { stations, last_u: last.frame().0 })
     }
 
     /// Length of the axis between its first and last section.
@@ -82,8 +84,7 @@ impl AxisPath {
     /// Angle between the transported frame and that of the last section, about the axis.
     pub fn twist(&self) -> f64 {
         let last = &self.stations[self.stations.len() - 1];
-        let (u, _) = Section { origin: last.origin, axis: last.axis, radius: last.radius }.frame();
-        libm::atan2(u.dot(&last.axis.cross(&last.u)), u.dot(&last.u))
+        libm::atan2(self.last_u.dot(&last.axis.cross(&last.u)), self.last_u.dot(&last.u))
     }
 
     /// Position at arc length `s`; extrapolated straight beyond the ends.

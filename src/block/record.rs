@@ -169,7 +169,7 @@ pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
     block.joints.iter().for_each(|joint| put(&mut out, &joint.faces));
     for FinishedCap { node, section, faces } in &block.caps {
         put(&mut out, &[node.0, faces.len() as u32]);
-        let Section { origin: o, axis: a, radius } = section;
+        let Section { origin: o, axis: a, radius, .. } = section;
         for x in [o.x, o.y, o.z, a.x, a.y, a.z, *radius] {
             out.extend_from_slice(&x.to_le_bytes());
         }
@@ -279,7 +279,7 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
                 let (ids, floats) = (words(&head[..8]), doubles(&head[8..]));
                 let own = faces.split_off(..ids[1] as usize).ok_or_else(damaged)?;
                 let [ox, oy, oz, ax, ay, az, radius] = floats[..] else { return Err(damaged()) };
-                let section = Section { origin: Point3::new(ox, oy, oz), axis: Vec3::new(ax, ay, az), radius };
+                let section = Section::new(Point3::new(ox, oy, oz), Vec3::new(ax, ay, az), radius);
                 Ok(FinishedCap { node: NodeId(ids[0]), section, faces: own.to_vec() })
             })
             .collect()

@@ -79,7 +79,7 @@ impl Lumen<'_> {
         let tube = self.network.tube(edge);
         let (length, [ra, rb]) = (tube.length(), [tube.ra, tube.rb]);
         let Some(axis) = (tube.b - tube.a).try_normalize(0.0) else { return 0.0 };
-        let (u, w) = Section { origin: tube.a, axis, radius: ra }.frame();
+        let (u, w) = Section::new(tube.a, axis, ra).frame();
         let (mut sum, mut seen) = (0.0, Vec::new());
         for [x, y, z] in evenly(edge.index(), count) {
             // Uniform along the axis and over each section; a sample has the weight of its section's area.

@@ -2,6 +2,7 @@
 //! access. For millions of vessels this takes a tenth of the memory of tubes, ends and paths.
 
 mod same;
+mod up;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -369,7 +370,11 @@ impl Layout {
         let PlacedCut { branch, planes, sides } = self.cuts[id.0 as usize];
         let course = self.course(branch);
         let size = self.size_amid(&course, planes);
-        Cut { branch: BranchId(branch), sides, path: path(&course, planes), size }
+        let mut path = path(&course, planes);
+        let [first, last] = self.ups(id);
+        path.first_mut().into_iter().for_each(|section| section.up = first);
+        path.last_mut().into_iter().for_each(|section| section.up = last);
+        Cut { branch: BranchId(branch), sides, path, size }
     }
 
     /// Returns the input of a cluster.
@@ -398,7 +403,10 @@ impl Layout {
                 cluster.size = self.size_amid(&course, arc);
             }
             for (end, way) in Way::BOTH.into_iter().enumerate().filter(|(end, _)| flat[*end]) {
-                let section = course.section(arc[end], way);
+                let mut section = course.section(arc[end], way);
+                if piece.cuts[end] != NONE {
+                    section.up = self.ups(CutId(piece.cuts[end]))[way.side()];
+                }
                 let usual = self.overrun.length(section.radius, r_min);
                 let overrun = self.overruns.get(&(index, end as u8)).copied().unwrap_or(usual);
                 let kind = match piece.cuts[end] {
@@ -465,7 +473,7 @@ impl Layout {
 /// Appends an end and its overrun.
 fn add_end(cluster: &mut Cluster, section: Section, overrun: f64, kind: EndKind) {
     let tube = cluster.tubes.len() as u32;
-    let Section { origin, axis, radius } = section;
+    let Section { origin, axis, radius, .. } = section;
     cluster.tubes.push(Tube { a: origin, b: origin + axis * overrun, ra: radius, rb: radius });
     cluster.ends.push(ClusterEnd { section, kind, overrun: tube });
 }

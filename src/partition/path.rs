@@ -20,10 +20,9 @@ pub(super) fn path(course: &Course, planes: [f64; 2]) -> Vec<Section> {
     let mut sections = Vec::with_capacity(2);
     sections.push(first);
     if course.has_node_between(planes[0], planes[1]) {
-        sections.extend(stations(course, planes).into_iter().map(|s| Section {
-            origin: course.point(s),
-            axis: course.tangent(s),
-            radius: 0.5 * (course.radius(s, Way::Onward) + course.radius(s, Way::Back)),
+        sections.extend(stations(course, planes).into_iter().map(|s| {
+            let radius = 0.5 * (course.radius(s, Way::Onward) + course.radius(s, Way::Back));
+            Section::new(course.point(s), course.tangent(s), radius)
         }));
         sections.push(last);
         return simplified(&sections);

@@ -118,7 +118,7 @@ fn sides(canvas: &Canvas, radius: f64) -> usize {
 /// Draws the lateral surface of a cone.
 fn cone(canvas: &mut Canvas, tube: &Tube, sides: usize, colours: [Rgb; 2]) {
     let axis = (tube.b - tube.a) / tube.length();
-    let (u, w) = Section { origin: tube.a, axis, radius: tube.ra }.frame();
+    let (u, w) = Section::new(tube.a, axis, tube.ra).frame();
     // Normals of a cone are inclined towards its thin end.
     let lean = axis * ((tube.ra - tube.rb) / tube.length());
     let out = |i: usize| {

@@ -319,8 +319,7 @@ fn edges_at_forks_are_as_short_as_asked_and_on_the_same_wall() {
     let ways = [Vec3::new(-1.0, 0.0, 0.0), way(0.9), way(-0.9)];
     let tubes: Vec<Tube> =
         ways.iter().map(|w| Tube { a: Point3::origin(), b: Point3::from(w * 8.0), ra: 1.0, rb: 1.0 }).collect();
-    let ends: Vec<Section> =
-        ways.iter().map(|w| Section { origin: Point3::from(w * 4.0), axis: *w, radius: 1.0 }).collect();
+    let ends: Vec<Section> = ways.iter().map(|w| Section::new(Point3::from(w * 4.0), *w, 1.0)).collect();
     let params = SurfaceParams { thin: 1.0, follow: 1.0, ..SurfaceParams::with_voxel(2.0 / 3.0) };
     let mut field = Field::new(&tubes, params.kappa).unwrap();
     let walls = [1.0, 0.5, 0.25].map(|factor| {

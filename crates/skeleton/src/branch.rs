@@ -93,11 +93,11 @@ impl Branch {
     pub fn section(&self, skeleton: &Skeleton, s: f64) -> anastomesh_mesh::geometry::Section {
         let place = self.locate(s);
         let tube = self.tube(skeleton, place.piece);
-        anastomesh_mesh::geometry::Section {
-            origin: tube.point(place.t),
-            axis: (tube.b - tube.a).normalize(),
-            radius: tube.radius(place.t),
-        }
+        anastomesh_mesh::geometry::Section::new(
+            tube.point(place.t),
+            (tube.b - tube.a).normalize(),
+            tube.radius(place.t),
+        )
     }
 
     /// Mean radius, weighted by length.

@@ -232,7 +232,7 @@ impl Course {
 
     /// End plane at `s`, its axis pointing `way`.
     pub fn section(&self, s: f64, way: Way) -> Section {
-        Section { origin: self.point(s), axis: self.direction(s, way), radius: self.radius(s, way) }
+        Section::new(self.point(s), self.direction(s, way), self.radius(s, way))
     }
 
     /// Unit direction of the axis at `s`, over a radius to either side.

@@ -36,7 +36,7 @@ pub enum SkeletonError {
         position: Point3,
     },
     /// A radius of a node is not [usable](is_usable_radius).
-    #[error("node {original} has the radius {radius:?}: radii must be between {SMALLEST:e} and {LARGEST:e}")]
+    #[error("node {original} has the radius {radius:?}: radii must be positive, between {SMALLEST:e} and {LARGEST:e}")]
     BadNodeRadius {
         /// The node, as numbered in the file (from 0).
         original: u32,
@@ -44,7 +44,7 @@ pub enum SkeletonError {
         radius: f64,
     },
     /// A radius of an edge is not [usable](is_usable_radius).
-    #[error("edge {} has the radius {radius:?}: radii must be between {SMALLEST:e} and {LARGEST:e}", edge.0)]
+    #[error("edge {} has the radius {radius:?}: radii must be positive, between {SMALLEST:e} and {LARGEST:e}", edge.0)]
     BadEdgeRadius {
         /// The edge.
         edge: EdgeId,

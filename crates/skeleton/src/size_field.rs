@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_section_takes_the_lower_quartile_of_the_points_nearby() {
-        let section = |z| Section { origin: Point3::new(0.0, 0.0, z), axis: Vec3::z(), radius: 1.0 };
+        let section = |z| Section::new(Point3::new(0.0, 0.0, z), Vec3::z(), 1.0);
         assert_eq!([5.0, 10.0, 12.25].map(|z| field().in_section(&section(z))), [Some(0.9), Some(0.3), Some(0.3)]);
         assert_eq!(field().in_section(&section(-3.0)), None);
         assert_eq!(field().nearest(&Point3::new(5.0, 0.0, 11.0)), 0.3);

@@ -65,27 +65,21 @@ pub struct Template {
     pub least: f64,
 }
 
-/// Cache key: corner count, length exponent, cap flags, layers (count, bits of growth and thickness), bits of the core
-/// factor.
-type TemplateKey = (u32, i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
+/// Cache key: corner count and rotation, length exponent, cap flags, layers (count, bits of growth and thickness), bits of
+/// the core factor.
+type TemplateKey = ([u32; 2], i32, [bool; 2], Option<(u32, [u64; 2])>, u64);
 /// Cached template; `None` if it cannot be made.
-type CacheEntry = Arc<OnceLock<Option<Template>>>;
+type CacheEntry = Arc<OnceLock<Option<Arc<Template>>>>;
 
 static TEMPLATES: LazyLock<RwLock<FxHashMap<TemplateKey, CacheEntry>>> = LazyLock::new(RwLock::default);
 
-/// Applies `then` to the template nearest to `length` radii for discs with this corner count. `caps` marks ends on the
-/// boundary of the whole mesh. Depends on ρ, core and layers of the parameters.
-pub fn with<R>(
-    params: &BlockParams,
-    corners: u32,
-    length: f64,
-    caps: [bool; 2],
-    then: impl FnOnce(&Template) -> R,
-) -> Option<R> {
+/// Returns the template nearest to `length` radii for discs with this corner count, the second one rotated by a number of
+/// corners. `caps` marks ends on the boundary of the whole mesh. Depends on ρ, core and layers of the parameters.
+pub fn template(params: &BlockParams, corners: [u32; 2], length: f64, caps: [bool; 2]) -> Option<Arc<Template>> {
     let power = (libm::log(length) / libm::log(STEP)).round() as i32;
     let layers = params.layers.map(|layers| (layers.count, [layers.growth, layers.thickness].map(f64::to_bits)));
     let kept = slot((corners, power, caps, layers, params.core.to_bits()));
-    kept.get_or_init(|| Template::best(params, STEP.powi(power), caps)).as_ref().map(then)
+    kept.get_or_init(|| Template::best(params, corners, STEP.powi(power), caps).map(Arc::new)).clone()
 }
 
 fn slot(key: TemplateKey) -> CacheEntry {
@@ -98,12 +92,15 @@ fn slot(key: TemplateKey) -> CacheEntry {
 
 impl Template {
     /// Best template among the placements of inner points, optimized.
-    fn best(params: &BlockParams, length: f64, caps: [bool; 2]) -> Option<Self> {
-        let section = |z| Section { origin: Point3::new(0.0, 0.0, z), axis: Vec3::z(), radius: 1.0 };
-        let cut =
-            Cut { branch: BranchId(0), sides: Cut::NOWHERE, path: vec![section(0.0), section(length)], size: None };
+    fn best(params: &BlockParams, [corners, rotation]: [u32; 2], length: f64, caps: [bool; 2]) -> Option<Self> {
+        let (y, x) = libm::sincos(TAU * f64::from(rotation) / f64::from(corners));
+        let first = Section::new(Point3::origin(), Vec3::z(), 1.0);
+        let last = Section { origin: Point3::new(0.0, 0.0, length), up: Some(Vec3::new(x, y, 0.0)), ..first };
+        let cut = Cut { branch: BranchId(0), sides: Cut::NOWHERE, path: vec![first, last], size: None };
         let ends = FreeEnds::new(CutId(0), &cut, &BlockParams::with_rho(params.rho)).ok()?;
-        let corners = ends.discs[0].rim.len() as u32;
+        if ends.discs[0].rim.len() != corners as usize {
+            return None;
+        }
         let tube = connector_surface(&cut.path, ends.both(), DIVISION).ok()?;
         let rings = Rings { corners, length, rows: tube.rings + 1, radius: 1.0, core: params.core };
         let inside = match &params.layers {

@@ -2,8 +2,9 @@
 //!
 //! With edges proportional to the radius, all discs of one ρ have equal corner counts. A vessel between two discs is
 //! then the image of a straight tube of radius 1. The map takes the axial position in radii, and the position in the
-//! disc, to the vessel. No filling is needed; longer vessels use several images in sequence. If taper, bend or twist
-//! spoil a tetrahedron, the tube is meshed individually.
+//! disc, to the vessel. No filling is needed; longer vessels use several images in sequence. If the disc at the second end is
+//! rotated, the last template has its second disc rotated by a whole number of corners, and the map turns by the rest. If
+//! taper, bend or twist spoil a tetrahedron, the tube is meshed individually.
 
 mod canonical;
 #[cfg(test)]
@@ -16,13 +17,19 @@ use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{Kept, TetMesh};
 use canonical::Template;
+use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Maximum template length, in radii. Inner discs are flat, and their neighbours slightly worse than others.
 const LONGEST: f64 = 12.0;
 /// Minimum template length, in radii.
 const SHORTEST: f64 = 0.5;
-/// Maximum twist, in radians per radius of length, to match the frame of the second disc.
-const TWIST: f64 = 0.1;
+/// Maximum twist of the map, in radians per radius of length.
+const TWIST: f64 = 0.15;
+/// Length of the last template of a tube with a rotated second disc, in radii. One template per rotation serves all lengths.
+const LAST: f64 = 2.0;
+/// Maximum length of such a tube that is the image of one template.
+const SHORT: f64 = 4.0;
 /// Core factor for axis edges as long as those of the wall.
 const PLAIN: f64 = 1.0;
 /// Minimum radius ratio of an image's tetrahedra.
@@ -66,68 +73,94 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
     }
     let path = AxisPath::new(path)?;
     let (radii, twist) = (path.radii(), path.twist());
+    let corner = TAU / corners as f64;
+    let rotation = (twist / corner).round();
+    let twist = twist - rotation * corner;
     let length = radii[radii.len() - 1];
     if !(length.is_finite() && length >= SHORTEST && twist.abs() <= TWIST * length) {
         return None;
     }
     // The stretch of a short tube is limited to leave one radius of template.
     let stretch = params.stretch.min(length).max(1.0);
-    let pieces = (length / (LONGEST * stretch)).ceil();
-    if pieces > 1.0 && caps != [false; 2] {
+    let lengths = lengths(length / stretch, rotation != 0.0);
+    if lengths.len() > 1 && caps != [false; 2] {
         return None;
     }
-    let image = |template: &Template| {
-        let image =
-            TemplateImage { template, path: &path, radii: &radii, discs, twist, stretch, pieces: pieces as u32 };
-        image.tube()
-    };
+    let rotation = rotation.rem_euclid(corners as f64) as u32;
+    let [first, last] = [lengths[0], lengths[lengths.len() - 1]];
+    let starts: Vec<f64> = (0..=lengths.len()).map(|i| lengths[..i].iter().sum::<f64>() * stretch / length).collect();
+    let (path, discs, radii, starts) = (&path, discs, &radii[..], &starts[..]);
+    let image =
+        |templates: [&Template; 2]| TemplateImage { templates, path, discs, radii, twist, stretch, starts }.tube();
     let of_core = |core: f64| {
         let params = BlockParams { core, ..*params };
-        canonical::with(&params, corners as u32, length / (pieces * stretch), caps, image).flatten()
+        let with = |length, rotation| canonical::template(&params, [corners as u32, rotation], length, caps);
+        let last = with(last, rotation)?;
+        let first = if lengths.len() > 1 { with(first, 0)? } else { Arc::clone(&last) };
+        image([&first, &last])
     };
     // If longer axis edges spoil a tetrahedron, uniform edges may work.
     of_core(params.core).or_else(|| if params.core == PLAIN { None } else { of_core(PLAIN) })
 }
 
-/// Template and the vessel that is its image.
+/// Lengths of the templates in a tube, in radii.
+fn lengths(length: f64, is_rotated: bool) -> Vec<f64> {
+    let last = if is_rotated && length > SHORT { LAST } else { 0.0 };
+    let count = ((length - last) / LONGEST).ceil().max(1.0);
+    let mut lengths = vec![(length - last) / count; count as usize];
+    lengths.extend((last > 0.0).then_some(last));
+    lengths
+}
+
+/// Templates and the vessel that is their image.
 struct TemplateImage<'a> {
-    template: &'a Template,
+    /// Template of all pieces but the last, and of the last.
+    templates: [&'a Template; 2],
     path: &'a AxisPath,
     discs: &'a [SharedDisc; 2],
     /// Length of the path in radii, up to each of its stations.
     radii: &'a [f64],
     twist: f64,
     stretch: f64,
-    pieces: u32,
+    /// Start of each piece, and the end of the last, as shares of the length in radii.
+    starts: &'a [f64],
 }
 
 impl TemplateImage<'_> {
     fn tube(&self) -> Option<FilledTube> {
-        let Template { disc, tets, wall, ends, rings, .. } = self.template;
+        let [first, last] = self.templates;
+        let pieces = self.starts.len() as u32 - 1;
         let numbers = |list: &[[u32; 3]], piece: u32| -> Vec<[u32; 3]> {
             list.iter().map(|t| t.map(|v| self.number(piece, v))).collect()
         };
-        let last = self.pieces - 1;
-        let all = |piece: u32| tets.iter().map(move |t| t.map(|v| self.number(piece, v)));
-        let mesh = TetMesh { points: self.points(), tets: (0..self.pieces).flat_map(all).collect() };
+        let tets = |piece: u32| self.template(piece).tets.iter().map(move |t| t.map(|v| self.number(piece, v)));
+        let mesh = TetMesh { points: self.points(), tets: (0..pieces).flat_map(tets).collect() };
         self.is_good(&mesh).then(|| FilledTube {
-            disc: *disc,
-            ends: [numbers(&ends[0], 0), numbers(&ends[1], last)],
-            wall: (0..self.pieces).flat_map(|piece| numbers(wall, piece)).collect(),
-            rings: (rings + 1) * self.pieces - 1,
+            disc: first.disc,
+            ends: [numbers(&first.ends[0], 0), numbers(&last.ends[1], pieces - 1)],
+            wall: (0..pieces).flat_map(|piece| numbers(&self.template(piece).wall, piece)).collect(),
+            rings: (0..pieces).map(|piece| self.template(piece).rings + 1).sum::<u32>() - 1,
             mesh,
         })
+    }
+
+    fn template(&self, piece: u32) -> &Template {
+        self.templates[usize::from(self.is_last(piece))]
+    }
+
+    fn is_last(&self, piece: u32) -> bool {
+        piece as usize + 2 == self.starts.len()
     }
 
     /// Number of a template point in a piece of the tube. The two end discs come first. For each piece follow its inner
     /// points, and the disc at its end unless it is the last.
     fn number(&self, piece: u32, v: u32) -> u32 {
-        let Template { disc, points, .. } = self.template;
+        let Template { disc, points, .. } = self.templates[0];
         let alone = points.len() as u32 - 2 * disc;
         let begin = |piece: u32| 2 * disc + piece * (alone + disc);
         match v {
             _ if v >= 2 * disc => begin(piece) + v - 2 * disc,
-            _ if v >= *disc && piece + 1 == self.pieces => v,
+            _ if v >= *disc && self.is_last(piece) => v,
             _ if v >= *disc => begin(piece) + alone + v - disc,
             _ if piece == 0 => v,
             _ => begin(piece - 1) + alone + v,
@@ -135,12 +168,12 @@ impl TemplateImage<'_> {
     }
 
     fn points(&self) -> Vec<Point3> {
-        let Template { disc, points, .. } = self.template;
-        let (discs, alone) = points.split_at(2 * *disc as usize);
         let mut out: Vec<Point3> = self.discs.iter().flat_map(|d| d.points.iter().copied()).collect();
-        for piece in 0..self.pieces {
+        for piece in 0..self.starts.len() as u32 - 1 {
+            let Template { disc, points, .. } = self.template(piece);
+            let (discs, alone) = points.split_at(2 * *disc as usize);
             out.extend(alone.iter().map(|p| self.map(piece, p)));
-            if piece + 1 < self.pieces {
+            if !self.is_last(piece) {
                 out.extend(discs[*disc as usize..].iter().map(|p| self.map(piece, p)));
             }
         }
@@ -149,7 +182,8 @@ impl TemplateImage<'_> {
 
     /// Maps a template point to a piece of the tube.
     fn map(&self, piece: u32, p: &Point3) -> Point3 {
-        let share = (f64::from(piece) + p.z) / f64::from(self.pieces);
+        let [start, end] = [0, 1].map(|i| self.starts[piece as usize + i]);
+        let share = start + (end - start) * p.z;
         let place = self.path.at(self.path.arc_of(self.radii, share * self.radii[self.radii.len() - 1]));
         let (x, y) = if self.twist == 0.0 {
             (p.x, p.y)
@@ -167,11 +201,13 @@ impl TemplateImage<'_> {
             let axis = self.path.at(path.min(self.path.length())).axis;
             p.map(|q| q - axis * ((q - p[0]).dot(&axis) * (1.0 - 1.0 / self.stretch)))
         };
-        let Template { tets, layers, least, .. } = self.template;
-        mesh.tets.iter().enumerate().all(|(i, t)| {
+        let pieces = (0..self.starts.len() as u32 - 1).map(|piece| self.template(piece));
+        let bounds = pieces.flat_map(|Template { tets, layers, least, .. }| {
+            (0..tets.len()).map(move |i| if i < *layers { LEAST * least } else { LEAST })
+        });
+        mesh.tets.iter().zip(bounds).all(|(t, bound)| {
             let corners = t.map(|v| mesh.points[v as usize]);
             let [a, b, c, d] = if self.stretch > 1.0 { shrunk(&corners) } else { corners };
-            let bound = if i % tets.len() < *layers { LEAST * least } else { LEAST };
             radius_ratio(&a, &b, &c, &d) >= bound
         })
     }

@@ -8,16 +8,15 @@ use anastomesh_skeleton::BranchId;
 use std::f64::consts::PI;
 
 fn section(z: f64, radius: f64) -> Section {
-    Section { origin: Point3::new(1.0, 2.0, z), axis: Vec3::z(), radius }
+    Section::new(Point3::new(1.0, 2.0, z), Vec3::z(), radius)
 }
 
 /// Sections along a circular arc with radius `bend`, from angle 0 to `angle`, in a plane in which frames do not rotate.
 fn arc(bend: f64, angle: f64) -> Vec<Section> {
     let at = |i: u32| angle * f64::from(i) / 12.0;
-    let place = |t: f64| Section {
-        origin: Point3::new(0.0, bend * libm::sin(t), bend * (1.0 - libm::cos(t))),
-        axis: Vec3::new(0.0, libm::cos(t), libm::sin(t)),
-        radius: 1.0,
+    let place = |t: f64| {
+        let origin = Point3::new(0.0, bend * libm::sin(t), bend * (1.0 - libm::cos(t)));
+        Section::new(origin, Vec3::new(0.0, libm::cos(t), libm::sin(t)), 1.0)
     };
     (0..=12).map(at).map(place).collect()
 }
@@ -70,6 +69,21 @@ fn discs_are_taken_over_bit_for_bit_and_the_lumen_is_that_of_the_vessel() {
     let cone = PI * 15.0 * (1.0 + 1.4 + 1.96) / 3.0;
     let volume = volume(&tube.mesh);
     assert!((volume / cone - 1.0).abs() < 0.01, "{volume} {cone}");
+}
+
+#[test]
+fn discs_may_be_rotated_by_any_angle() {
+    for length in [2.2, 3.0, 6.0, 30.0] {
+        for degrees in (0..360).step_by(25) {
+            let mut path = vec![section(0.0, 2.0), section(2.0 * length, 2.0)];
+            let (y, x) = libm::sincos(f64::from(degrees).to_radians());
+            path[1].up = Some(anastomesh_mesh::geometry::Vec3::new(x, y, 0.0));
+            let made = along(&path, &BlockParams::default()).expect("a tube");
+            let quality = TetQuality::of(&made.mesh);
+            assert!(quality.min > 0.3 && quality.mean > 0.8, "{length} {degrees}: {quality:?}");
+            assert!(block(path, &BlockParams::default()).certificate.is_sound(), "{length} {degrees}");
+        }
+    }
 }
 
 #[test]

@@ -25,7 +25,11 @@ impl Layout {
         let clusters = common([counts[0][0], counts[1][0]], order, |i, j| self.is_same_cluster(i, before, j));
         let place = |layout: &Self, i: usize| (layout.cuts[i].branch, layout.cuts[i].planes[0]);
         let order = |i, j| place(self, i).partial_cmp(&place(before, j));
-        let cuts = common([counts[0][1], counts[1][1]], order, |i, j| self.cuts[i].planes == before.cuts[j].planes);
+        let is_same_cut = |i: usize, j: usize| {
+            let ups = [(self, i), (before, j)].map(|(layout, cut)| layout.ups(CutId(cut as u32)));
+            self.cuts[i].planes == before.cuts[j].planes && ups[0] == ups[1]
+        };
+        let cuts = common([counts[0][1], counts[1][1]], order, is_same_cut);
         Same {
             clusters: clusters.into_iter().map(|j| j.map(ClusterId)).collect(),
             cuts: cuts.into_iter().map(|j| j.map(CutId)).collect(),
@@ -48,10 +52,14 @@ impl Layout {
         let same_piece = |(k, (a, b)): (usize, (&Placed, &Placed))| {
             let [k, l] = [self.first_piece[i], before.first_piece[j]].map(|first| first + k as u32);
             let overruns = |layout: &Self, piece: u32| [0, 1].map(|end| layout.overruns.get(&(piece, end)).copied());
+            let ups = |layout: &Self, piece: &Placed| {
+                [0, 1].map(|end| (piece.cuts[end] != NONE).then(|| layout.ups(CutId(piece.cuts[end]))[1 - end]))
+            };
             a.branch == b.branch
                 && a.terminals == b.terminals
                 && self.planes_of(a) == before.planes_of(b)
                 && overruns(self, k) == overruns(before, l)
+                && ups(self, a) == ups(before, b)
         };
         let (own, other) = (self.pieces_of(i), before.pieces_of(j));
         let [a, b] = [(self, i), (before, j)].map(|(layout, i)| layout.nodes(ClusterId(i as u32)));

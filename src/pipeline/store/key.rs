@@ -62,6 +62,7 @@ impl KeyMaker {
         self.point(&s.origin);
         self.vector(&s.axis);
         self.float(s.radius);
+        s.up.iter().for_each(|up| self.vector(up));
     }
 
     pub fn finish(&self) -> Key {

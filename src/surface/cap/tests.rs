@@ -12,7 +12,7 @@ fn star(arms: &[([f64; 3], f64, f64)]) -> (Vec<Tube>, Vec<Closing<'static>>) {
         let axis = b.coords.normalize();
         tubes.push(Tube { a: Point3::origin(), b, ra, rb });
         tubes.push(Tube { a: b, b: b + axis * (1.25 * rb), ra: rb, rb });
-        let section = Section { origin: b, axis, radius: rb };
+        let section = Section::new(b, axis, rb);
         ends.push(Closing { section, node: Some(NodeId(i as u32)), disc: None });
     }
     (tubes, ends)
@@ -112,7 +112,7 @@ fn the_tree_finds_all_faces_near_a_tip() {
         assert!(near.is_sorted() && near.len() < count);
         let is_near = |&f: &u32| (wall.mesh.points[wall.mesh.triangles[f as usize][0] as usize] - p).norm() <= 1.5;
         assert!((0..count as u32).filter(is_near).all(|f| near.contains(&f)));
-        let section = Section { origin: p, axis: Vec3::x(), radius: 1.0 };
+        let section = Section::new(p, Vec3::x(), 1.0);
         assert_eq!(few.tip(&section).0, many.tip(&section).0);
     }
 }

@@ -47,8 +47,11 @@ impl Tube {
     }
 }
 
+/// Length of `up` across the axis below which it gives no direction.
+const LEAST_ACROSS: f64 = 0.1;
+
 /// Plane across a vessel.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Section {
     /// Intersection of the vessel's axis with the plane.
     pub origin: Point3,
@@ -56,14 +59,26 @@ pub struct Section {
     pub axis: Vec3,
     /// Radius of the vessel there.
     pub radius: f64,
+    /// Direction of the frame's first vector, up to its component along the axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub up: Option<Vec3>,
 }
 
 impl Section {
-    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed and depends on `axis` alone. It is the
-    /// coordinate frame, rotated the shortest way from z to the axis. Along a bend it rotates little about the axis,
-    /// except near −z, where any frame has a jump.
+    /// Section whose frame depends on the axis alone.
+    pub fn new(origin: Point3, axis: Vec3, radius: f64) -> Self {
+        Self { origin, axis, radius, up: None }
+    }
+
+    /// Two unit vectors that span the plane; `(u, w, axis)` is right-handed. `u` is `up` without its component along the axis.
+    /// Without `up`, it is the coordinate frame, rotated the shortest way from z to the axis. Along a bend that frame rotates
+    /// little about the axis, except near −z, where any frame has a jump.
     pub fn frame(&self) -> (Vec3, Vec3) {
         let n = self.axis;
+        let across = |up: Vec3| (up - n * n.dot(&up)).try_normalize(LEAST_ACROSS);
+        if let Some(u) = self.up.and_then(across) {
+            return (u, n.cross(&u));
+        }
         let turned = Vec3::x() - (Vec3::z() + n) * (n.x / (1.0 + n.z));
         let u = (turned - n * n.dot(&turned)).try_normalize(0.0).filter(|u| u.norm_squared().is_finite());
         let u = u.unwrap_or(Vec3::x());

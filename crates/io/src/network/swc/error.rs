@@ -43,7 +43,7 @@ pub enum SwcError {
     },
     /// A radius is zero, negative, infinite, NaN, or too small or large for computation.
     #[error(
-        "line {line}: node {id} has the radius {radius:?}; radii must be between {SMALLEST:e} and {LARGEST:e}: give the radius of the \
+        "line {line}: node {id} has the radius {radius:?}; radii must be positive, between {SMALLEST:e} and {LARGEST:e}: give the radius of the \
          vessel"
     )]
     BadRadius {

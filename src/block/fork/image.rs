@@ -1,0 +1,96 @@
+//! Image of a canonical fork.
+
+use super::FilledFork;
+use super::canonical::Canonical;
+use super::shape::{Fork, Limb};
+use crate::block::layered::disc_at_end;
+use crate::block::params::BlockParams;
+use crate::partition::Cluster;
+use crate::surface::Field;
+use anastomesh_mesh::TetMesh;
+use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::quality::{dihedral_range, radius_ratio};
+
+/// Decrease of a limb's weight per length of the limb.
+const SHARPNESS: f64 = 6.0;
+/// Newton steps of a point of the wall, its largest deviation from its level after them, and its largest displacement in
+/// radii.
+const STEPS: usize = 3;
+const OFF_LEVEL: f64 = 2e-3;
+const FAR: f64 = 0.3;
+/// Minimum radius ratio of an image's tetrahedra, and their minimum dihedral angle in degrees.
+const LEAST: f64 = 0.3;
+const LEAST_ANGLE: f64 = 16.0;
+/// Tetrahedra with a larger radius ratio have larger angles.
+const ANGULAR: f64 = 0.6;
+
+/// Returns the image; `None` if it does not fit or has poor tetrahedra.
+pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {
+    let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p, &canonical.fork, fork)).collect();
+    let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
+    for (i, limb) in fork.limbs.iter().enumerate() {
+        let disc = disc_at_end(&cluster.ends[limb.end as usize].section, limb.side, params)?;
+        if disc.points.len() != canonical.disc_vertices[i].len() {
+            return None;
+        }
+        for (&v, p) in canonical.disc_vertices[i].iter().zip(&disc.points) {
+            points[v as usize] = *p;
+        }
+        discs[limb.end as usize].clone_from(&canonical.discs[i]);
+    }
+    let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
+    for &(v, level) in &canonical.levels {
+        let p = &mut points[v as usize];
+        *p = at_level(&mut field, *p, level, FAR * fork.radius)?;
+    }
+    let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
+    let mesh = TetMesh { points, tets };
+    is_good(&mesh).then(|| FilledFork { mesh, discs, wall: canonical.wall.clone() })
+}
+
+/// Moves a point with the limbs of a fork: the mean of its images in their frames.
+fn moved(p: &Point3, from: &Fork, to: &Fork) -> Point3 {
+    let w = p - from.node;
+    let shares = from.limbs.map(|limb| w.dot(&limb.axis) / limb.length);
+    let largest = shares.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (mut sum, mut total) = (Vec3::zeros(), 0.0);
+    for i in 0..3 {
+        let weight = libm::exp(SHARPNESS * (shares[i] - largest));
+        sum += with_limb(&w, shares[i], [&from.limbs[i], &to.limbs[i]]) * weight;
+        total += weight;
+    }
+    to.node + sum / total
+}
+
+/// Image of an offset from the node, at a share of a limb's length, in the frame of the other limb.
+fn with_limb(w: &Vec3, share: f64, [from, to]: [&Limb; 2]) -> Vec3 {
+    let radius = |[near, far]: [f64; 2]| near + (far - near) * share.clamp(0.0, 1.0);
+    let scale = radius(to.radii) / radius(from.radii);
+    let [x, y] = from.frame.map(|u| w.dot(&u) * scale);
+    to.axis * (share * to.length) + to.frame[0] * x + to.frame[1] * y
+}
+
+/// Moves a point to a level of the field; `None` if it does not get there, or moves further than `far`.
+fn at_level(field: &mut Field, start: Point3, level: f64, far: f64) -> Option<Point3> {
+    let mut p = start;
+    for _ in 0..=STEPS {
+        let (value, gradient) = field.value_and_gradient(&p);
+        if (value - level).abs() <= OFF_LEVEL {
+            return ((p - start).norm() <= far).then_some(p);
+        }
+        let square = gradient.norm_squared();
+        if square == 0.0 {
+            return None;
+        }
+        p -= gradient * ((value - level) / square);
+    }
+    None
+}
+
+fn is_good(mesh: &TetMesh) -> bool {
+    mesh.tets.iter().all(|t| {
+        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
+        let ratio = radius_ratio(a, b, c, d);
+        ratio >= LEAST && (ratio >= ANGULAR || dihedral_range([a, b, c, d]).0.to_degrees() >= LEAST_ANGLE)
+    })
+}

@@ -1,0 +1,54 @@
+//! Forks by template: a bifurcation of three straight vessels is the image of a canonical fork.
+//!
+//! Shapes are divided into cells of angles, radii and lengths. A canonical fork ([`canonical`]) is contoured and filled once
+//! per cell. The map to a fork of the cell ([`image`]) moves its points with the three vessels, and those of the wall onto
+//! the level set of the fork's own field. Discs at cuts are taken over bit for bit. A canonical fork depends on its cell
+//! alone, so the result does not depend on the order of forks. If an image has poor tetrahedra, the fork is contoured.
+
+mod cache;
+mod canonical;
+mod image;
+mod shape;
+#[cfg(test)]
+mod tests;
+
+use super::params::{BlockParams, EndStyle};
+use crate::partition::Cluster;
+use anastomesh_mesh::{Kept, TetMesh};
+use shape::Fork;
+
+/// Fork filled with tetrahedra.
+pub(super) struct FilledFork {
+    /// Points and tetrahedra.
+    pub mesh: TetMesh,
+    /// Triangles of the discs, in the order of the cluster's ends, facing outwards.
+    pub discs: [Vec<[u32; 3]>; 3],
+    /// Triangles of the wall, facing outwards.
+    pub wall: Vec<[u32; 3]>,
+}
+
+impl FilledFork {
+    /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
+    pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>, [Vec<[u32; 3]>; 3]) {
+        let Self { mesh, discs, wall } = self;
+        if !hollow {
+            return (mesh, Vec::new(), discs);
+        }
+        let hull: Vec<[u32; 3]> = discs.iter().chain([&wall]).flatten().copied().collect();
+        let kept = Kept::used(&hull, mesh.points.len(), 0);
+        let cells = |list: &[[u32; 3]]| list.iter().map(|t| kept.cell(t)).collect();
+        let points = kept.select(&mesh.points);
+        (TetMesh { points, tets: Vec::new() }, cells(&hull), discs.each_ref().map(|disc| cells(disc)))
+    }
+}
+
+/// Meshes a fork by template. Returns `None` for other clusters, and if no template fits.
+pub(super) fn fork(cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {
+    let usual = params.ends == EndStyle::Shared && params.by_template() && params.layers.is_none();
+    if !usual || !cluster.fine.is_empty() {
+        return None;
+    }
+    let fork = Fork::of(cluster)?;
+    let canonical = cache::canonical(fork.cell()?, params)?;
+    image::image(&canonical, &fork, cluster, params)
+}

@@ -1,0 +1,157 @@
+//! Shape of a fork, and its cell.
+
+use crate::partition::{Cluster, ClusterEnd, CutId, EndKind};
+use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use std::f64::consts::TAU;
+
+/// Steps of a cell: azimuth in radians, height, logarithm of radii, logarithm of lengths.
+const AZIMUTH: f64 = TAU / 18.0;
+const HEIGHT: f64 = 0.3;
+const RADIUS: f64 = 0.4;
+const LENGTH: f64 = 0.4;
+/// Length of a vessel in the middle of a cell, in radii: about the distance of most cuts.
+const USUAL_LENGTH: f64 = 2.2;
+/// Largest sine of the angle between the axis of a vessel at its cut and its chord.
+const STRAIGHT: f64 = 1e-3;
+
+/// Vessel of a fork, from its node to its cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limb {
+    /// Unit vector from the node.
+    pub axis: Vec3,
+    /// Frame of the disc: two unit vectors that form a right-handed system with the axis.
+    pub frame: [Vec3; 2],
+    /// Length up to the cut.
+    pub length: f64,
+    /// Radii at the node and at the cut.
+    pub radii: [f64; 2],
+    /// Side of the cut.
+    pub side: u8,
+    /// Index of the end in the cluster.
+    pub end: u32,
+}
+
+/// Bifurcation of three straight vessels up to their cuts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fork {
+    pub node: Point3,
+    /// Largest radius at the node, the unit of lengths of the canonical fork.
+    pub radius: f64,
+    /// Vessels, those that end at the node first, then by radius.
+    pub limbs: [Limb; 3],
+}
+
+/// Cell of similar forks: sides of the cuts, steps of height, azimuths, radii and lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Cell {
+    sides: [u8; 3],
+    height: i8,
+    azimuths: [i8; 2],
+    radii: [[i8; 2]; 3],
+    lengths: [i8; 3],
+}
+
+impl Fork {
+    /// Shape of a cluster; `None` if it is no fork of straight vessels whose frames are normal to its plane.
+    pub fn of(cluster: &Cluster) -> Option<Self> {
+        let [_, _, _] = cluster.ends.as_slice() else { return None };
+        if cluster.tubes.len() != 6 {
+            return None;
+        }
+        let mut node = None;
+        let mut limbs = Vec::with_capacity(3);
+        for (end, index) in cluster.ends.iter().zip(0..) {
+            let EndKind::Cut { side, .. } = end.kind else { return None };
+            let (from, radii) = vessel(cluster, end)?;
+            if *node.get_or_insert(from) != from {
+                return None;
+            }
+            let chord = end.section.origin - from;
+            let length = chord.norm();
+            end.section.up?;
+            let (u, w) = end.section.frame();
+            if !(length > 0.0 && chord.cross(&end.section.axis).norm() <= STRAIGHT * length) {
+                return None;
+            }
+            limbs.push(Limb { axis: end.section.axis, frame: [u, w], length, radii, side, end: index });
+        }
+        limbs.sort_by(|a, b| b.side.cmp(&a.side).then(b.radii[1].total_cmp(&a.radii[1])));
+        let radius = limbs.iter().map(|limb| limb.radii[0]).fold(0.0, f64::max);
+        Some(Self { node: node?, radius, limbs: limbs.try_into().ok()? })
+    }
+
+    /// Normal of the plane of the fork, on the side of the frames.
+    fn normal(&self) -> Option<Vec3> {
+        let [a, b, c] = self.limbs.map(|limb| limb.axis);
+        let normal = (a - c).cross(&(b - c)).try_normalize(0.0)?;
+        Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
+    }
+
+    /// Cell of the fork; `None` if a step is out of range.
+    pub fn cell(&self) -> Option<Cell> {
+        let normal = self.normal()?;
+        let height = normal.dot(&self.limbs[0].axis);
+        let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
+        let azimuth = |limb: usize| {
+            let (x, y) = (across[0].dot(&across[limb]), normal.dot(&across[0].cross(&across[limb])));
+            libm::atan2(y, x)
+        };
+        let step = |x: f64, of: f64| {
+            let step = (x / of).round();
+            (step.abs() <= 100.0).then_some(step as i8)
+        };
+        let radius = |r: f64| step(libm::log(r / self.radius), RADIUS);
+        let mut cell = Cell {
+            sides: self.limbs.map(|limb| limb.side),
+            height: step(height, HEIGHT)?,
+            azimuths: [step(azimuth(1), AZIMUTH)?, step(azimuth(2), AZIMUTH)?],
+            radii: [[0; 2]; 3],
+            lengths: [0; 3],
+        };
+        for (i, limb) in self.limbs.iter().enumerate() {
+            cell.radii[i] = [radius(limb.radii[0])?, radius(limb.radii[1])?];
+            cell.lengths[i] = step(libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])), LENGTH)?;
+        }
+        Some(cell)
+    }
+}
+
+/// Start and radii of the vessel that ends at a cut, if it is one tube.
+fn vessel(cluster: &Cluster, end: &ClusterEnd) -> Option<(Point3, [f64; 2])> {
+    let at = end.section.origin;
+    let is_vessel = |(i, tube): &(u32, &Tube)| *i != end.overrun && (tube.a == at || tube.b == at);
+    let mut vessels = (0..).zip(&cluster.tubes).filter(is_vessel);
+    let (_, tube) = vessels.next()?;
+    if vessels.next().is_some() {
+        return None;
+    }
+    Some(if tube.b == at { (tube.a, [tube.ra, tube.rb]) } else { (tube.b, [tube.rb, tube.ra]) })
+}
+
+impl Cell {
+    /// Fork in the middle of the cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the
+    /// extension beyond a cut, in radii.
+    pub fn cluster(&self, overrun: f64) -> Cluster {
+        let height = (HEIGHT * f64::from(self.height)).clamp(-0.9, 0.9);
+        let across = (1.0 - height * height).sqrt();
+        let mut cluster = Cluster::default();
+        for (i, [from, to]) in self.radii.iter().map(|steps| steps.map(radius)).enumerate() {
+            let azimuth = if i == 0 { 0.0 } else { AZIMUTH * f64::from(self.azimuths[i - 1]) };
+            let (y, x) = libm::sincos(azimuth);
+            let axis = Vec3::new(across * x, across * y, height);
+            let length = USUAL_LENGTH * to * libm::exp(LENGTH * f64::from(self.lengths[i]));
+            let at = Point3::from(axis * length);
+            let index = cluster.tubes.len() as u32 + 1;
+            cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
+            cluster.tubes.push(Tube { a: at, b: at + axis * (overrun * to), ra: to, rb: to });
+            let section = Section { up: Some(Vec3::z()), ..Section::new(at, axis, to) };
+            let kind = EndKind::Cut { cut: CutId(i as u32), side: self.sides[i] };
+            cluster.ends.push(ClusterEnd { section, kind, overrun: index });
+        }
+        cluster
+    }
+}
+
+fn radius(step: i8) -> f64 {
+    libm::exp(RADIUS * f64::from(step))
+}

@@ -1,0 +1,143 @@
+use super::canonical::Canonical;
+use super::fork;
+use super::image::image;
+use super::shape::Fork;
+use crate::block::contoured::contoured;
+use crate::block::{BlockParams, EndStyle, Finished, mesh_cluster};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_mesh::quality::TetQuality;
+use anastomesh_tet::parts::Watch;
+use nalgebra::Rotation3;
+
+/// Fork at a node: for each vessel its azimuth in degrees, length and radii at both ends. The first one ends at the node.
+fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [f64; 2]); 3]) -> Cluster {
+    let mut cluster = Cluster::default();
+    let normal = turn * Vec3::z();
+    for (i, (azimuth, length, radii)) in (0..).zip(vessels) {
+        let (y, x) = libm::sincos(azimuth.to_radians());
+        let axis = turn * Vec3::new(x, y, rise).normalize();
+        let at = node + axis * length;
+        cluster.tubes.push(Tube { a: node, b: at, ra: radii[0], rb: radii[1] });
+        cluster.tubes.push(Tube { a: at, b: at + axis * 1.07 * radii[1], ra: radii[1], rb: radii[1] });
+        let section = Section { up: Some(normal), ..Section::new(at, axis, radii[1]) };
+        let kind = EndKind::Cut { cut: CutId(i), side: u8::from(i == 0) };
+        cluster.ends.push(ClusterEnd { section, kind, overrun: 2 * i + 1 });
+    }
+    cluster
+}
+
+fn plain() -> [(f64, f64, [f64; 2]); 3] {
+    [(4.0, 2.2, [1.0, 1.05]), (128.0, 2.3, [1.0, 0.95]), (251.0, 2.1, [1.0, 0.9])]
+}
+
+fn turned(seed: f64) -> Rotation3<f64> {
+    Rotation3::from_euler_angles(seed, 1.3 * seed, 2.9 * seed)
+}
+
+fn shared() -> BlockParams {
+    BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(3.0) }
+}
+
+#[test]
+fn images_are_sound_and_as_good_as_contoured_forks() {
+    let shapes = [
+        plain(),
+        [(-9.0, 2.4, [1.0, 1.2]), (110.0, 2.0, [1.0, 0.8]), (-120.0, 2.1, [1.0, 0.7])],
+        [(0.0, 2.2, [1.0, 1.0]), (140.0, 2.0, [0.8, 0.8]), (-140.0, 2.0, [0.8, 0.8])],
+    ];
+    for (i, vessels) in shapes.into_iter().enumerate() {
+        let input = cluster(Point3::new(100.0, -3.0, 7.0), turned(1.0 + i as f64), 0.1 * i as f64, vessels);
+        assert!(fork(&input, &shared()).is_some(), "{i}");
+        let [image, direct] =
+            [mesh_cluster(ClusterId(0), &input, &shared()), contoured(ClusterId(0), &input, &shared(), &Watch::NOBODY)]
+                .map(|made| {
+                    Finished::of_cluster(made.expect("a cluster"), |node| node.0).expect("its ends are on its boundary")
+                });
+        assert!(image.certificate.is_sound(), "{i}");
+        // The same discs, whether by template or not.
+        for (a, b) in image.joints.iter().zip(&direct.joints) {
+            let points = |block: &Finished, vertices: &[u32]| -> Vec<Point3> {
+                vertices.iter().map(|&v| block.mesh.points[v as usize]).collect()
+            };
+            assert_eq!(points(&image, &a.vertices), points(&direct, &b.vertices));
+        }
+        let [a, b] = [&image, &direct].map(|block| TetQuality::of(&block.mesh));
+        assert!(a.min > 0.3 && a.mean > b.mean - 0.01, "{i}: {a:?} {b:?}");
+        let [a, b] = [&image, &direct].map(|block| volume(block));
+        assert!((a / b - 1.0).abs() < 5e-3, "{i}: {a} {b}");
+    }
+}
+
+fn volume(block: &Finished) -> f64 {
+    let of = |t: &[u32; 4]| {
+        let [a, b, c, d] = t.map(|v| block.mesh.points[v as usize]);
+        (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0
+    };
+    block.mesh.tets.iter().map(of).sum()
+}
+
+#[test]
+fn images_turn_with_their_forks() {
+    let at = |node: Point3, turn: Rotation3<f64>| {
+        let input = cluster(node, turn, 0.05, plain());
+        fork(&input, &shared()).expect("a fork").mesh
+    };
+    let (there, turn) = (Point3::new(5.0, -8.0, 2.0), turned(2.0));
+    let (still, moved) = (at(Point3::origin(), Rotation3::identity()), at(there, turn));
+    assert_eq!(still.tets, moved.tets);
+    for (p, q) in still.points.iter().zip(&moved.points) {
+        assert!((there + turn * p.coords - q).norm() < 1e-9);
+    }
+}
+
+#[test]
+fn the_middle_of_a_cell_is_its_own_image() {
+    let params = shared();
+    let cell =
+        Fork::of(&cluster(Point3::origin(), turned(0.5), 0.0, plain())).and_then(|fork| fork.cell()).expect("a cell");
+    let canonical = Canonical::of(&cell, &params).expect("a canonical fork");
+    let middle = cell.cluster(2.0 * 1.6 / 3.0);
+    let fork = Fork::of(&middle).expect("a fork");
+    assert_eq!(fork.cell(), Some(cell));
+    let made = image(&canonical, &fork, &middle, &params).expect("an image");
+    for (p, q) in canonical.points.iter().zip(&made.mesh.points) {
+        assert!((p - q).norm() < 1e-2, "{p} {q}");
+    }
+    // The same cell gives the same fork.
+    let again = Canonical::of(&cell, &params).expect("a canonical fork");
+    assert_eq!((canonical.points, canonical.tets), (again.points, again.tets));
+}
+
+#[test]
+fn hollow_forks_have_the_same_boundary() {
+    let input = cluster(Point3::origin(), turned(3.0), 0.0, plain());
+    let of = |hollow| {
+        let made = mesh_cluster(ClusterId(0), &input, &BlockParams { hollow, ..shared() }).expect("a cluster");
+        Finished::of_cluster(made, |node| node.0).expect("its ends are on its boundary")
+    };
+    let (filled, hollow) = (of(false), of(true));
+    assert!(hollow.certificate.is_sound() && hollow.mesh.tets.is_empty());
+    assert_eq!(
+        hollow.hull.len(),
+        filled.wall.len() + filled.joints.iter().map(|joint| joint.faces.len()).sum::<usize>()
+    );
+}
+
+#[test]
+fn other_clusters_are_no_forks() {
+    let straight = cluster(Point3::origin(), turned(3.0), 0.0, plain());
+    assert!(fork(&straight, &shared()).is_some());
+    let layered = BlockParams { layers: Some(anastomesh_tet::Layers::default()), ..shared() };
+    assert!(fork(&straight, &layered).is_none());
+    assert!(fork(&straight, &BlockParams { shift: [0.5, 0.0, 0.0], ..shared() }).is_none());
+    let mut bent = straight.clone();
+    bent.ends[1].section.axis = (bent.ends[1].section.axis + Vec3::new(0.0, 0.05, 0.0)).normalize();
+    assert!(fork(&bent, &shared()).is_none());
+    let mut unframed = straight.clone();
+    unframed.ends[2].section.up = None;
+    assert!(fork(&unframed, &shared()).is_none());
+    let mut apart = straight;
+    apart.tubes[2].a += Vec3::new(0.0, 0.0, 1e-9);
+    assert!(fork(&apart, &shared()).is_none());
+}
