@@ -5,9 +5,11 @@ use super::error::BlockError;
 use super::fork::fork;
 use super::lone_tube::lone_tube;
 use super::params::BlockParams;
-use crate::partition::{Cluster, ClusterId};
+use super::topology::Topology;
+use crate::partition::{Cluster, ClusterId, EndKind};
 use anastomesh_mesh::TetMesh;
 use anastomesh_tet::parts::Watch;
+use std::sync::Arc;
 
 /// Meshes one cluster.
 ///
@@ -30,13 +32,14 @@ pub(crate) fn mesh_cluster_watched(
     params.check()?;
     let image = if let Some(tube) = lone_tube(cluster, params) {
         let triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
-        let discs = tube.ends.to_vec();
+        let (discs, topology) = (tube.ends.to_vec(), Arc::clone(&tube.topology));
         let (mesh, hull) = tube.kept(params.hollow);
-        Image { mesh, hull, discs, triangles }
+        Image { mesh, hull, discs, triangles, topology }
     } else if let Some(fork) = fork(cluster, params) {
         let triangles = fork.discs.iter().map(Vec::len).sum::<usize>() + fork.wall.len();
+        let topology = Arc::clone(&fork.topology);
         let (mesh, hull, discs) = fork.kept(params.hollow);
-        Image { mesh, hull, discs: discs.to_vec(), triangles }
+        Image { mesh, hull, discs: discs.to_vec(), triangles, topology }
     } else {
         return contoured(id, cluster, params, watch);
     };
@@ -52,16 +55,22 @@ struct Image {
     discs: Vec<Vec<[u32; 3]>>,
     /// Number of triangles of the boundary.
     triangles: usize,
+    /// Topology of the tetrahedra, with a disc for each end.
+    topology: Arc<Topology>,
 }
 
 impl Image {
     fn finished(self, id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
-        let Self { mesh, hull, discs, triangles } = self;
+        let Self { mesh, hull, discs, triangles, topology } = self;
         let voxel = 2.0 * smallest_radius(cluster) / params.rho;
         let caps = caps(cluster, &discs);
         let mut out = ClusterMesh { mesh, hull, caps, voxel, surface_triangles: triangles, ..ClusterMesh::default() };
         out.ends = disc_ends(id, cluster, |end| discs[end as usize].clone(), &out.mesh)?;
         check_shared(id, cluster, &out, params)?;
+        // Discs of cuts come first.
+        let is_cap = |end: &usize| matches!(cluster.ends[*end].kind, EndKind::Terminal(_));
+        let (caps, cuts): (Vec<usize>, Vec<usize>) = (0..cluster.ends.len()).partition(is_cap);
+        out.topology = (!params.hollow).then(|| topology.ordered(&[cuts, caps].concat()));
         Ok(out)
     }
 }

@@ -7,11 +7,13 @@ use super::free_ends::FreeEnds;
 use super::layered::{ThinLayers, Walled, discs_first, renumbered};
 use super::params::{BlockParams, filling};
 use super::template::{self, FilledTube};
+use super::topology::Topology;
 use crate::partition::{Cut, CutId};
 use anastomesh_mesh::geometry::Section;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_tet::TetError;
 use anastomesh_tet::parts::{Inset, Watch, fill_outward};
+use std::sync::Arc;
 
 /// Mesh of a connector.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +31,8 @@ pub struct ConnectorMesh {
     pub thin: Option<ThinLayers>,
     /// Failed attempts before this one.
     pub failed: Vec<ConnectorAttempt>,
+    /// Topology of an image of a template.
+    pub(crate) topology: Option<Arc<Topology>>,
 }
 
 /// Number of divisions of a connector's tube to try.
@@ -101,8 +105,9 @@ pub fn mesh_free_connector(id: CutId, cut: &Cut, params: &BlockParams) -> Result
 fn image(tube: FilledTube, hollow: bool) -> ConnectorMesh {
     let shared = sides([tube.disc; 2]).collect();
     let rings = tube.rings;
+    let topology = (!hollow).then(|| Arc::clone(&tube.topology));
     let (mesh, hull) = tube.kept(hollow);
-    ConnectorMesh { mesh, hull, shared, rings, thin: None, failed: Vec::new() }
+    ConnectorMesh { mesh, hull, shared, rings, thin: None, failed: Vec::new(), topology }
 }
 
 /// Fills the tube of a connector along a path.
@@ -111,7 +116,7 @@ fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Res
     let ConnectorSurface { surface, shared, end_triangles, rings } = tube;
     let (hull, failed) = (Vec::new(), Vec::new());
     let Some(layers) = &params.layers else {
-        return Ok(ConnectorMesh { mesh: fill(&surface)?, hull, shared, rings, thin: None, failed });
+        return Ok(ConnectorMesh { mesh: fill(&surface)?, hull, shared, rings, thin: None, failed, topology: None });
     };
     let centres = [path.first(), path.last()].map(|section| section.map(|s| s.origin));
     let cap = |(i, triangle): (u32, &[u32; 3])| {
@@ -125,7 +130,8 @@ fn filled(tube: ConnectorSurface, path: &[Section], params: &BlockParams) -> Res
     let plain = [0..first, first..shared.len() as u32];
     let (counts, renamed) = discs_first(&numbers, plain, layers.count, mesh.points.len());
     let shared = sides(counts).collect();
-    Ok(ConnectorMesh { mesh: renumbered(mesh, &renamed), hull, shared, rings, thin, failed })
+    let mesh = renumbered(mesh, &renamed);
+    Ok(ConnectorMesh { mesh, hull, shared, rings, thin, failed, topology: None })
 }
 
 /// Points of two discs, one after the other.
@@ -135,5 +141,6 @@ fn sides(counts: [u32; 2]) -> impl Iterator<Item = EndVertex> {
 
 fn hollow(surface: ConnectorSurface, failed: Vec<ConnectorAttempt>) -> ConnectorMesh {
     let ConnectorSurface { surface: TriMesh { points, triangles }, shared, rings, .. } = surface;
-    ConnectorMesh { mesh: TetMesh { points, tets: Vec::new() }, hull: triangles, shared, rings, thin: None, failed }
+    let mesh = TetMesh { points, tets: Vec::new() };
+    ConnectorMesh { mesh, hull: triangles, shared, rings, thin: None, failed, topology: None }
 }

@@ -7,6 +7,7 @@ use super::faithful::Astray;
 use super::layered::{ThinLayers, Walled, disc_at_end};
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
+use super::topology::Topology;
 use super::webs::{Gaps, webs};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::surface::{
@@ -23,6 +24,7 @@ use anastomesh_tet::{
     parts::{Watch, fill_outward},
 };
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Flat cap of a terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +69,8 @@ pub struct ClusterMesh {
     pub thin: Option<ThinLayers>,
     /// Places of narrow gaps that were closed (only with [`BlockParams::close_gaps`]).
     pub closed_gaps: Vec<Point3>,
+    /// Topology of an image of a template, with the discs of cuts first, then those of caps.
+    pub(crate) topology: Option<Arc<Topology>>,
 }
 
 /// Contours a cluster, closes it, and fills it.
@@ -103,6 +107,7 @@ pub(super) fn contoured(
         thin,
         closed_gaps,
         ends: Vec::new(),
+        topology: None,
     };
     if params.ends != EndStyle::Open {
         out.ends = disc_ends(id, cluster, |end| discs[end as usize].clone(), &out.mesh)?;

@@ -1,21 +1,22 @@
 //! Finished block: common result of clusters and connectors for the final mesh.
 
 use super::error::NotOnBoundary;
-use anastomesh_mesh::face_key;
 use rustc_hash::FxHashMap;
 
 use super::connector::ConnectorMesh;
-use super::contoured::ClusterMesh;
+use super::contoured::{CapFaces, ClusterMesh};
 use super::end_surface::{EndSurface, StoredEnd, disc_rim};
 use super::faithful::Astray;
 use super::layered::ThinLayers;
+use super::topology::{FinishedJoint, Topology};
 use crate::partition::CutId;
-use anastomesh_mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use anastomesh_mesh::adjacency::face_vertices;
 use anastomesh_mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::{Cap, TetMesh};
 use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::is_open;
+use std::sync::Arc;
 
 /// Least cosine between a direction away from a wall vertex and the normals of its triangles. Smaller ones are left to the
 /// shells' own smoothing.
@@ -41,15 +42,6 @@ pub struct Finished {
     pub certificate: Certificate,
     /// Report data.
     pub about: About,
-}
-
-/// Disc between two blocks, as seen by one of them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FinishedJoint {
-    /// Vertices in ascending order; the other block has them in equal order.
-    pub vertices: Vec<u32>,
-    /// Boundary faces of the disc.
-    pub faces: Vec<u32>,
 }
 
 /// Flat cap of a terminal.
@@ -109,19 +101,27 @@ impl Finished {
     /// # Errors
     /// An end or a cap is not on the boundary.
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
-        let ClusterMesh { mesh, hull, ends, caps, uncapped, astray, handles, loops, filled, thin, closed_gaps, .. } =
-            cluster;
-        let mut faces = Faces::new(&mesh, &hull);
-        let joints = ends.iter().map(|end| faces.joint(&end.triangles)).collect::<Result<_, _>>()?;
-        let cap = |cap: &super::CapFaces| {
-            Ok(FinishedCap { node: cap.node, section: cap.section, faces: faces.take(&cap.triangles)? })
+        let ClusterMesh { mesh, hull, ends, caps, topology, .. } = cluster;
+        let ClusterMesh { uncapped, astray, handles, loops, filled, thin, closed_gaps, .. } = cluster;
+        let topology = match topology {
+            Some(topology) => topology,
+            None => {
+                let discs = ends.iter().map(|end| &end.triangles).chain(caps.iter().map(|cap| &cap.triangles));
+                Arc::new(topology_of(&mesh, &hull, discs)?)
+            }
         };
-        let caps = caps.iter().map(cap).collect::<Result<_, _>>()?;
+        let (joints, of_caps) = topology.discs.split_at(ends.len());
+        let cap = |(cap, disc): (&CapFaces, &FinishedJoint)| FinishedCap {
+            node: cap.node,
+            section: cap.section,
+            faces: disc.faces.clone(),
+        };
+        let caps = caps.iter().zip(of_caps).map(cap).collect();
         let uncapped = uncapped.iter().map(|n| n.0).collect();
         let closed_gaps = closed_gaps.into_iter().map(Into::into).collect();
         let about = About { uncapped, astray, handles, loops, filled, thin, closed_gaps, ..About::default() };
-        let (wall, adjacency) = faces.rest();
-        Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(adjacency, original))
+        let (wall, joints) = (topology.wall.clone(), joints.to_vec());
+        Ok(Self { mesh, hull, wall, joints, caps, about, ..Self::default() }.certified(&topology, original))
     }
 
     /// Converts a connector between two end surfaces.
@@ -129,33 +129,39 @@ impl Finished {
     /// # Errors
     /// An end is not on the boundary.
     pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
-        let ConnectorMesh { mesh, hull, shared, thin, .. } = connector;
+        let ConnectorMesh { mesh, hull, shared, thin, topology, .. } = connector;
         let about = About { thin, ..About::default() };
-        let mut faces = Faces::new(&mesh, &hull);
-        let mut joints = Vec::with_capacity(2);
-        let mut base = 0;
-        for end in ends {
-            let vertices = end.vertices();
-            // The connector has the ends' vertices in ascending order, and their triangles reversed.
-            let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
-            let triangles: Vec<_> = end.triangles.iter().map(|t| [local(t[0]), local(t[2]), local(t[1])]).collect();
-            joints.push(faces.joint(&triangles)?);
-            base += vertices.len() as u32;
-        }
-        let (wall, adjacency) = faces.rest();
+        let topology = match topology {
+            Some(topology) => topology,
+            None => {
+                let mut base = 0;
+                let discs = ends.map(|end| {
+                    let vertices = end.vertices();
+                    // The connector has the ends' vertices in ascending order, and their triangles reversed.
+                    let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
+                    let reversed = |t: &[u32; 3]| [local(t[0]), local(t[2]), local(t[1])];
+                    let triangles: Vec<[u32; 3]> = end.triangles.iter().map(reversed).collect();
+                    base += vertices.len() as u32;
+                    triangles
+                });
+                Arc::new(topology_of(&mesh, &hull, &discs)?)
+            }
+        };
+        let (wall, joints) = (topology.wall.clone(), topology.discs.clone());
         let connector = Self { mesh, hull, shared: shared.len() as u32, wall, joints, about, ..Self::default() };
-        Ok(connector.certified(adjacency, |node| node.0))
+        Ok(connector.certified(&topology, |node| node.0))
     }
 
     /// Adds the certificate of the block's own checks.
-    fn certified(mut self, adjacency: Option<TetAdjacency>, original: impl Fn(NodeId) -> u32) -> Self {
+    fn certified(mut self, topology: &Topology, original: impl Fn(NodeId) -> u32) -> Self {
         let joints: Vec<_> = self.joints.iter().map(|joint| self.triangles(&joint.faces)).collect();
         let cap = |cap: &FinishedCap| (cap.disc(original(cap.node)), self.triangles(&cap.faces));
         let caps: Vec<_> = self.caps.iter().map(cap).collect();
         let view = PartView { mesh: &self.mesh, joints: &joints, caps: &caps };
-        self.certificate = match adjacency {
-            Some(adjacency) => certify_with(&view, || adjacency),
-            None => certify_hollow(&view, &self.hull),
+        self.certificate = if self.hull.is_empty() {
+            certify_with(&view, || &topology.adjacency)
+        } else {
+            certify_hollow(&view, &self.hull)
         };
         self
     }
@@ -195,44 +201,14 @@ pub(super) fn triangle_of(mesh: &TetMesh, hull: &[[u32; 3]], face: u32) -> [u32;
     hull.get(face as usize).copied().unwrap_or_else(|| face_vertices(&mesh.tets, face))
 }
 
-/// Boundary faces of a block that are not yet assigned.
-struct Faces {
-    left: FxHashMap<[u32; 3], u32>,
-    /// `None` in a hollow block.
-    adjacency: Option<TetAdjacency>,
-}
-
-impl Faces {
-    fn new(mesh: &TetMesh, hull: &[[u32; 3]]) -> Self {
-        if mesh.tets.is_empty() {
-            let left = (0..).zip(hull).map(|(face, triangle)| (face_key(*triangle), face)).collect();
-            return Self { left, adjacency: None };
-        }
-        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
-        let left = adjacency.boundary().map(|face| (face_key(face_vertices(&mesh.tets, face)), face)).collect();
-        Self { left, adjacency: Some(adjacency) }
-    }
-
-    fn take(&mut self, triangles: &[[u32; 3]]) -> Result<Vec<u32>, NotOnBoundary> {
-        let take = |&face: &[u32; 3]| self.left.remove(&face_key(face)).ok_or(NotOnBoundary { face });
-        let mut faces = triangles.iter().map(take).collect::<Result<Vec<u32>, _>>()?;
-        faces.sort_unstable();
-        Ok(faces)
-    }
-
-    fn joint(&mut self, triangles: &[[u32; 3]]) -> Result<FinishedJoint, NotOnBoundary> {
-        let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
-        vertices.sort_unstable();
-        vertices.dedup();
-        Ok(FinishedJoint { vertices, faces: self.take(triangles)? })
-    }
-
-    /// Returns the unassigned faces and the adjacency.
-    fn rest(self) -> (Vec<u32>, Option<TetAdjacency>) {
-        let mut rest: Vec<u32> = self.left.into_values().collect();
-        rest.sort_unstable();
-        (rest, self.adjacency)
-    }
+/// Topology of tetrahedra, or of the closed surface of a hollow block.
+fn topology_of<'a>(
+    mesh: &TetMesh,
+    hull: &[[u32; 3]],
+    discs: impl IntoIterator<Item = &'a Vec<[u32; 3]>>,
+) -> Result<Topology, NotOnBoundary> {
+    let discs = discs.into_iter().map(Vec::as_slice);
+    if hull.is_empty() { Topology::of(mesh, discs) } else { Topology::of_hull(hull, discs) }
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ mod rings;
 mod shape;
 mod strip;
 mod template;
+mod topology;
 mod wall;
 mod webs;
 
@@ -41,11 +42,12 @@ pub use dump::{BlockDump, BlockInput, DumpError};
 pub use end_surface::{EndFault, EndSurface, StoredEnd};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use faithful::Astray;
-pub use finished::{About, Cured, Finished, FinishedCap, FinishedJoint};
+pub use finished::{About, Cured, Finished, FinishedCap};
 pub use free_ends::shared_ends;
 pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};
 pub use record::{Bytes, Record, Sizes, encode};
+pub use topology::FinishedJoint;
 
 #[cfg(all(test, feature = "woven"))]
 pub(crate) use connector_surface::connector_surface;

@@ -14,7 +14,8 @@ use std::borrow::Cow;
 use std::io;
 use std::ops::Range;
 
-use super::finished::{About, Finished, FinishedCap, FinishedJoint};
+use super::finished::{About, Finished, FinishedCap};
+use super::topology::FinishedJoint;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::face_vertices;
 use anastomesh_mesh::check::parts::Certificate;

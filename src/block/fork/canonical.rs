@@ -3,28 +3,15 @@
 use super::shape::{Cell, Fork};
 use crate::block::contoured::contoured;
 use crate::block::params::{BlockParams, EndStyle};
+use crate::block::topology::Topology;
 use crate::partition::{ClusterId, PartitionParams};
 use crate::surface::Field;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
-use anastomesh_mesh::face_key;
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_tet::Effort;
 use anastomesh_tet::parts::{OptimizeOptions, Watch, optimize};
 use rustc_hash::FxHashSet;
-
-/// Optimizer options: every tetrahedron with full effort. The result is used for many forks.
-const HARD: OptimizeOptions = OptimizeOptions {
-    fixed_points: 0,
-    rounds: 2,
-    smooth_below: 1.1,
-    flip_below: 0.95,
-    stubborn_below: 0.6,
-    keep_points: false,
-    attempts_per_tet: 40,
-    effort: Effort::Full,
-    spare_needles: false,
-};
+use std::sync::Arc;
 
 /// Filled fork in the middle of a cell.
 pub struct Canonical {
@@ -34,12 +21,12 @@ pub struct Canonical {
     pub tets: Vec<[u16; 4]>,
     /// Triangles of the disc of each limb, facing outwards.
     pub discs: [Vec<[u32; 3]>; 3],
-    /// Vertices of each disc, in ascending order.
-    pub disc_vertices: [Vec<u32>; 3],
     /// Triangles of the wall, facing outwards.
     pub wall: Vec<[u32; 3]>,
     /// Vertices of the wall off the discs, with their level in the field.
     pub levels: Vec<(u32, f64)>,
+    /// Topology of the tetrahedra, with the discs.
+    pub topology: Arc<Topology>,
 }
 
 impl Canonical {
@@ -56,28 +43,20 @@ impl Canonical {
         let mut mesh = made.mesh;
         // Points of the boundary come first, and keep their order.
         let fixed_points = boundary_points(&mesh)?;
-        optimize(&mut mesh, &OptimizeOptions { fixed_points, ..HARD }).ok()?;
+        optimize(&mut mesh, &OptimizeOptions { fixed_points, ..OptimizeOptions::full() }).ok()?;
         if mesh.points.len() > usize::from(u16::MAX) {
             return None;
         }
-        let disc_vertices = discs.each_ref().map(|disc| {
-            let mut vertices = disc.as_flattened().to_vec();
-            vertices.sort_unstable();
-            vertices.dedup();
-            vertices
-        });
-        let of_discs: FxHashSet<[u32; 3]> = discs.iter().flatten().map(|&t| face_key(t)).collect();
-        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
-        let boundary = adjacency.boundary().map(|face| face_vertices(&mesh.tets, face));
-        let wall: Vec<[u32; 3]> = boundary.filter(|&t| !of_discs.contains(&face_key(t))).collect();
-        let fixed: FxHashSet<u32> = disc_vertices.iter().flatten().copied().collect();
+        let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;
+        let wall: Vec<[u32; 3]> = topology.wall.iter().map(|&face| face_vertices(&mesh.tets, face)).collect();
+        let fixed: FxHashSet<u32> = topology.discs.iter().flat_map(|disc| disc.vertices.iter().copied()).collect();
         let mut free: Vec<u32> = wall.as_flattened().iter().copied().filter(|v| !fixed.contains(v)).collect();
         free.sort_unstable();
         free.dedup();
         let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
         let levels = free.into_iter().map(|v| (v, field.value(&mesh.points[v as usize]))).collect();
         let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
-        Some(Self { fork, points: mesh.points, tets, discs, disc_vertices, wall, levels })
+        Some(Self { fork, points: mesh.points, tets, discs, wall, levels, topology: Arc::new(topology) })
     }
 }
 

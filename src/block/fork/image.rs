@@ -30,10 +30,11 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
     for (i, limb) in fork.limbs.iter().enumerate() {
         let disc = disc_at_end(&cluster.ends[limb.end as usize].section, limb.side, params)?;
-        if disc.points.len() != canonical.disc_vertices[i].len() {
+        let vertices = &canonical.topology.discs[i].vertices;
+        if disc.points.len() != vertices.len() {
             return None;
         }
-        for (&v, p) in canonical.disc_vertices[i].iter().zip(&disc.points) {
+        for (&v, p) in vertices.iter().zip(&disc.points) {
             points[v as usize] = *p;
         }
         discs[limb.end as usize].clone_from(&canonical.discs[i]);
@@ -45,7 +46,12 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
     let mesh = TetMesh { points, tets };
-    is_good(&mesh).then(|| FilledFork { mesh, discs, wall: canonical.wall.clone() })
+    is_good(&mesh).then(|| {
+        // Limb of each end.
+        let mut order = [0, 1, 2];
+        order.sort_by_key(|&limb| fork.limbs[limb].end);
+        FilledFork { mesh, discs, wall: canonical.wall.clone(), topology: canonical.topology.ordered(&order) }
+    })
 }
 
 /// Moves a point with the limbs of a fork: the mean of its images in their frames.

@@ -13,9 +13,11 @@ mod shape;
 mod tests;
 
 use super::params::{BlockParams, EndStyle};
+use super::topology::Topology;
 use crate::partition::Cluster;
 use anastomesh_mesh::{Kept, TetMesh};
 use shape::Fork;
+use std::sync::Arc;
 
 /// Fork filled with tetrahedra.
 pub(super) struct FilledFork {
@@ -25,12 +27,14 @@ pub(super) struct FilledFork {
     pub discs: [Vec<[u32; 3]>; 3],
     /// Triangles of the wall, facing outwards.
     pub wall: Vec<[u32; 3]>,
+    /// Topology of the tetrahedra, with the discs in the same order.
+    pub topology: Arc<Topology>,
 }
 
 impl FilledFork {
     /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
     pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>, [Vec<[u32; 3]>; 3]) {
-        let Self { mesh, discs, wall } = self;
+        let Self { mesh, discs, wall, .. } = self;
         if !hollow {
             return (mesh, Vec::new(), discs);
         }

@@ -3,6 +3,7 @@ use super::fork;
 use super::image::image;
 use super::shape::Fork;
 use crate::block::contoured::contoured;
+use crate::block::topology::Topology;
 use crate::block::{BlockParams, EndStyle, Finished, mesh_cluster};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
@@ -48,7 +49,9 @@ fn images_are_sound_and_as_good_as_contoured_forks() {
     ];
     for (i, vessels) in shapes.into_iter().enumerate() {
         let input = cluster(Point3::new(100.0, -3.0, 7.0), turned(1.0 + i as f64), 0.1 * i as f64, vessels);
-        assert!(fork(&input, &shared()).is_some(), "{i}");
+        let made = fork(&input, &shared()).expect("a fork");
+        let topology = Topology::of(&made.mesh, made.discs.iter().map(Vec::as_slice));
+        assert_eq!(*made.topology, topology.expect("its discs are on its boundary"), "{i}");
         let [image, direct] =
             [mesh_cluster(ClusterId(0), &input, &shared()), contoured(ClusterId(0), &input, &shared(), &Watch::NOBODY)]
                 .map(|made| {

@@ -7,16 +7,19 @@
 //! taper, bend or twist spoil a tetrahedron, the tube is meshed individually.
 
 mod canonical;
+mod joined;
 #[cfg(test)]
 mod tests;
 
 use super::params::BlockParams;
 use super::path::AxisPath;
+use super::topology::Topology;
 use crate::surface::SharedDisc;
 use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{Kept, TetMesh};
 use canonical::Template;
+use joined::{Part, joined};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -48,6 +51,8 @@ pub struct FilledTube {
     pub wall: Vec<[u32; 3]>,
     /// Number of rings between the rims.
     pub rings: u32,
+    /// Topology of the tetrahedra, with both discs.
+    pub topology: Arc<Topology>,
 }
 
 impl FilledTube {
@@ -140,8 +145,21 @@ impl TemplateImage<'_> {
             ends: [numbers(&first.ends[0], 0), numbers(&last.ends[1], pieces - 1)],
             wall: (0..pieces).flat_map(|piece| numbers(&self.template(piece).wall, piece)).collect(),
             rings: (0..pieces).map(|piece| self.template(piece).rings + 1).sum::<u32>() - 1,
+            topology: self.topology(),
             mesh,
         })
+    }
+
+    fn topology(&self) -> Arc<Topology> {
+        let pieces = self.starts.len() as u32 - 1;
+        if pieces == 1 {
+            return Arc::clone(&self.templates[0].topology);
+        }
+        let part = |piece| {
+            let Template { topology, interface, .. } = self.template(piece);
+            Part { topology, interface }
+        };
+        Arc::new(joined((0..pieces).map(part)))
     }
 
     fn template(&self, piece: u32) -> &Template {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::block::end_surface::EndSurface;
+use crate::block::topology::Topology;
 use crate::block::{ConnectorMesh, EndStyle, Finished, mesh_free_connector, shared_ends};
 use crate::partition::{Cut, CutId};
 use anastomesh_mesh::geometry::Vec3;
@@ -81,6 +82,8 @@ fn discs_may_be_rotated_by_any_angle() {
             let made = along(&path, &BlockParams::default()).expect("a tube");
             let quality = TetQuality::of(&made.mesh);
             assert!(quality.min > 0.3 && quality.mean > 0.8, "{length} {degrees}: {quality:?}");
+            let topology = Topology::of(&made.mesh, made.ends.iter().map(Vec::as_slice));
+            assert_eq!(*made.topology, topology.expect("its discs are on its boundary"), "{length} {degrees}");
             assert!(block(path, &BlockParams::default()).certificate.is_sound(), "{length} {degrees}");
         }
     }

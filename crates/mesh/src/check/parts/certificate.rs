@@ -15,6 +15,7 @@ use crate::geometry::Aabb;
 use crate::geometry::DisjointSets;
 use crate::geometry::predicates::in_exact_range;
 use crate::quality::{QualitySum, Spokes};
+use std::borrow::Borrow;
 use std::iter;
 
 /// Pairs of faces that meet improperly which a certificate keeps.
@@ -30,7 +31,7 @@ enum Owner {
 
 /// Checks a part alone; see the [module](super) for what that says of the whole. Sequential: the thread that made a part
 /// certifies it. `adjacency` gives what [`tet_adjacency`](crate::adjacency::tet_adjacency) says of the part's mesh.
-pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -> Certificate {
+pub fn certify_with<A: Borrow<TetAdjacency>>(part: &PartView, adjacency: impl FnOnce() -> A) -> Certificate {
     let mesh = part.mesh;
     let mut certificate = Certificate {
         points: mesh.points.len() as u32,
@@ -44,10 +45,11 @@ pub fn certify_with(part: &PartView, adjacency: impl FnOnce() -> TetAdjacency) -
         return certificate;
     }
     let adjacency = adjacency();
-    if !certificate.measure_cells(mesh, &adjacency) {
-        certificate.take(cells::lines(mesh, &adjacency));
+    let adjacency = adjacency.borrow();
+    if !certificate.measure_cells(mesh, adjacency) {
+        certificate.take(cells::lines(mesh, adjacency));
     }
-    certificate.look_at_boundary(part, &adjacency);
+    certificate.look_at_boundary(part, adjacency);
     // Else equal points are excluded by what has been found, see `super`.
     if !certificate.faults.is_empty() {
         certificate.take([cells::no_duplicate_points(mesh)]);

@@ -1,0 +1,89 @@
+//! Adjacency and faces of a block's tetrahedra. They depend on the vertex numbers alone, so images of a template share them.
+
+use super::error::NotOnBoundary;
+use anastomesh_mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use anastomesh_mesh::{TetMesh, face_key};
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+
+/// Disc between two blocks, as seen by one of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FinishedJoint {
+    /// Vertices in ascending order; the other block has them in equal order.
+    pub vertices: Vec<u32>,
+    /// Boundary faces of the disc.
+    pub faces: Vec<u32>,
+}
+
+/// Adjacency of tetrahedra, and the faces of their boundary: handles `4 · tet + i` in ascending order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Topology {
+    /// Face neighbours.
+    pub adjacency: TetAdjacency,
+    /// Discs at the ends of the block, in their order.
+    pub discs: Vec<FinishedJoint>,
+    /// Other faces of the boundary.
+    pub wall: Vec<u32>,
+}
+
+impl Topology {
+    /// Topology of a mesh with these discs.
+    ///
+    /// # Errors
+    /// A triangle is not on the boundary.
+    pub fn of<'a>(mesh: &TetMesh, discs: impl IntoIterator<Item = &'a [[u32; 3]]>) -> Result<Self, NotOnBoundary> {
+        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+        let mut faces = Faces::new(adjacency.boundary().map(|face| (face, face_vertices(&mesh.tets, face))));
+        let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
+        Ok(Self { adjacency, discs, wall: faces.rest() })
+    }
+
+    /// Topology of a closed surface with these discs. Faces are indices of triangles, and there is no adjacency.
+    ///
+    /// # Errors
+    /// A triangle is not part of the surface.
+    pub fn of_hull<'a>(
+        hull: &[[u32; 3]],
+        discs: impl IntoIterator<Item = &'a [[u32; 3]]>,
+    ) -> Result<Self, NotOnBoundary> {
+        let mut faces = Faces::new((0..).zip(hull.iter().copied()));
+        let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
+        Ok(Self { adjacency: TetAdjacency::default(), discs, wall: faces.rest() })
+    }
+}
+
+impl Topology {
+    /// The same topology with its discs in another order.
+    pub fn ordered(self: &Arc<Self>, order: &[usize]) -> Arc<Self> {
+        if order.is_sorted() {
+            return Arc::clone(self);
+        }
+        let discs = order.iter().map(|&disc| self.discs[disc].clone()).collect();
+        Arc::new(Self { adjacency: self.adjacency.clone(), discs, wall: self.wall.clone() })
+    }
+}
+
+/// Boundary faces that are not yet assigned.
+struct Faces(FxHashMap<[u32; 3], u32>);
+
+impl Faces {
+    fn new(faces: impl Iterator<Item = (u32, [u32; 3])>) -> Self {
+        Self(faces.map(|(face, triangle)| (face_key(triangle), face)).collect())
+    }
+
+    fn joint(&mut self, triangles: &[[u32; 3]]) -> Result<FinishedJoint, NotOnBoundary> {
+        let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let take = |&face: &[u32; 3]| self.0.remove(&face_key(face)).ok_or(NotOnBoundary { face });
+        let mut faces = triangles.iter().map(take).collect::<Result<Vec<u32>, _>>()?;
+        faces.sort_unstable();
+        Ok(FinishedJoint { vertices, faces })
+    }
+
+    fn rest(self) -> Vec<u32> {
+        let mut rest: Vec<u32> = self.0.into_values().collect();
+        rest.sort_unstable();
+        rest
+    }
+}
