@@ -73,6 +73,13 @@ pub struct ClusterMesh {
     pub(crate) topology: Option<Arc<Topology>>,
 }
 
+impl ClusterMesh {
+    /// True if the mesh is the image of a template.
+    pub fn is_image(&self) -> bool {
+        self.topology.is_some()
+    }
+}
+
 /// Contours a cluster, closes it, and fills it.
 ///
 /// # Errors

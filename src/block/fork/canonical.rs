@@ -1,7 +1,7 @@
 //! Canonical fork of a cell: contoured and filled as other clusters are, then optimized.
 
-use super::shape::{Cell, Fork};
-use crate::block::contoured::contoured;
+use super::shape::{Cell, Fork, TIP};
+use crate::block::contoured::{ClusterMesh, contoured};
 use crate::block::params::{BlockParams, EndStyle};
 use crate::block::topology::Topology;
 use crate::partition::{ClusterId, PartitionParams};
@@ -10,7 +10,7 @@ use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_tet::parts::{OptimizeOptions, Watch, optimize};
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Filled fork in the middle of a cell.
@@ -23,10 +23,18 @@ pub struct Canonical {
     pub discs: [Vec<[u32; 3]>; 3],
     /// Triangles of the wall, facing outwards.
     pub wall: Vec<[u32; 3]>,
-    /// Vertices of the wall off the discs, with their level in the field.
-    pub levels: Vec<(u32, f64)>,
+    /// Vertices of the wall, but for those on discs at cuts.
+    pub levels: Vec<Level>,
     /// Topology of the tetrahedra, with the discs.
     pub topology: Arc<Topology>,
+}
+
+/// Vertex of the wall and its level in the field.
+pub struct Level {
+    pub vertex: u32,
+    pub value: f64,
+    /// Limb of the cap whose rim contains the vertex.
+    pub rim: Option<usize>,
 }
 
 impl Canonical {
@@ -38,8 +46,7 @@ impl Canonical {
         let fork = Fork::of(&cluster).filter(|fork| (0..).zip(&fork.limbs).all(|(i, limb)| limb.end == i))?;
         let params = BlockParams { ends: EndStyle::Shared, core: params.core, ..BlockParams::with_rho(params.rho) };
         let made = contoured(ClusterId(0), &cluster, &params, &Watch::NOBODY).ok()?;
-        let [a, b, c] = <[_; 3]>::try_from(made.ends).ok()?.map(|end| end.triangles);
-        let discs = [a, b, c];
+        let discs = discs(&fork, &made)?;
         let mut mesh = made.mesh;
         // Points of the boundary come first, and keep their order.
         let fixed_points = boundary_points(&mesh)?;
@@ -49,15 +56,30 @@ impl Canonical {
         }
         let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;
         let wall: Vec<[u32; 3]> = topology.wall.iter().map(|&face| face_vertices(&mesh.tets, face)).collect();
-        let fixed: FxHashSet<u32> = topology.discs.iter().flat_map(|disc| disc.vertices.iter().copied()).collect();
-        let mut free: Vec<u32> = wall.as_flattened().iter().copied().filter(|v| !fixed.contains(v)).collect();
+        let limb_of: FxHashMap<u32, usize> =
+            (0..).zip(&topology.discs).flat_map(|(i, disc)| disc.vertices.iter().map(move |&v| (v, i))).collect();
+        let mut free: Vec<u32> = wall.as_flattened().to_vec();
         free.sort_unstable();
         free.dedup();
         let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
-        let levels = free.into_iter().map(|v| (v, field.value(&mesh.points[v as usize]))).collect();
+        let mut level =
+            |v: u32| Level { vertex: v, value: field.value(&mesh.points[v as usize]), rim: limb_of.get(&v).copied() };
+        let levels =
+            free.into_iter().map(&mut level).filter(|level| !level.rim.is_some_and(|i| fork.limbs[i].side != TIP));
+        let levels = levels.collect();
         let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
         Some(Self { fork, points: mesh.points, tets, discs, wall, levels, topology: Arc::new(topology) })
     }
+}
+
+/// Triangles of the ends of the limbs; `None` if a cap is missing.
+fn discs(fork: &Fork, made: &ClusterMesh) -> Option<[Vec<[u32; 3]>; 3]> {
+    let (mut cuts, mut caps) = (made.ends.iter(), made.caps.iter());
+    let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
+    for (disc, limb) in discs.iter_mut().zip(&fork.limbs) {
+        disc.clone_from(if limb.side == TIP { &caps.next()?.triangles } else { &cuts.next()?.triangles });
+    }
+    Some(discs)
 }
 
 /// Number of leading points up to the last one on the boundary.

@@ -2,7 +2,7 @@
 
 use super::FilledFork;
 use super::canonical::Canonical;
-use super::shape::{Fork, Limb};
+use super::shape::{Fork, Limb, TIP};
 use crate::block::layered::disc_at_end;
 use crate::block::params::BlockParams;
 use crate::partition::Cluster;
@@ -29,6 +29,13 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p, &canonical.fork, fork)).collect();
     let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
     for (i, limb) in fork.limbs.iter().enumerate() {
+        discs[limb.end as usize].clone_from(&canonical.discs[i]);
+        if limb.side == TIP {
+            for &v in &canonical.topology.discs[i].vertices {
+                points[v as usize] = on_cap(&canonical.points[v as usize], &canonical.fork, fork, i);
+            }
+            continue;
+        }
         let disc = disc_at_end(&cluster.ends[limb.end as usize].section, limb.side, params)?;
         let vertices = &canonical.topology.discs[i].vertices;
         if disc.points.len() != vertices.len() {
@@ -37,12 +44,12 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
         for (&v, p) in vertices.iter().zip(&disc.points) {
             points[v as usize] = *p;
         }
-        discs[limb.end as usize].clone_from(&canonical.discs[i]);
     }
     let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
-    for &(v, level) in &canonical.levels {
-        let p = &mut points[v as usize];
-        *p = at_level(&mut field, *p, level, FAR * fork.radius)?;
+    for level in &canonical.levels {
+        let p = &mut points[level.vertex as usize];
+        let plane = level.rim.map(|limb| fork.limbs[limb].axis);
+        *p = at_level(&mut field, *p, level.value, plane, FAR * fork.radius)?;
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
     let mesh = TetMesh { points, tets };
@@ -76,14 +83,21 @@ fn with_limb(w: &Vec3, share: f64, [from, to]: [&Limb; 2]) -> Vec3 {
     to.axis * (share * to.length) + to.frame[0] * x + to.frame[1] * y
 }
 
-/// Moves a point to a level of the field; `None` if it does not get there, or moves further than `far`.
-fn at_level(field: &mut Field, start: Point3, level: f64, far: f64) -> Option<Point3> {
+/// Image of a point of a cap: in the plane of the terminal.
+fn on_cap(p: &Point3, from: &Fork, to: &Fork, limb: usize) -> Point3 {
+    to.node + with_limb(&(p - from.node), 1.0, [&from.limbs[limb], &to.limbs[limb]])
+}
+
+/// Moves a point to a level of the field, within a plane with the given normal; `None` if it does not get there, or moves
+/// further than `far`.
+fn at_level(field: &mut Field, start: Point3, level: f64, plane: Option<Vec3>, far: f64) -> Option<Point3> {
     let mut p = start;
     for _ in 0..=STEPS {
         let (value, gradient) = field.value_and_gradient(&p);
         if (value - level).abs() <= OFF_LEVEL {
             return ((p - start).norm() <= far).then_some(p);
         }
+        let gradient = gradient - plane.map_or(Vec3::zeros(), |normal| normal * normal.dot(&gradient));
         let square = gradient.norm_squared();
         if square == 0.0 {
             return None;

@@ -1,4 +1,4 @@
-//! Forks by template: a bifurcation of three straight vessels is the image of a canonical fork.
+//! Forks by template: a bifurcation of three straight vessels, up to cuts or terminals, is the image of a canonical fork.
 //!
 //! Shapes are divided into cells of angles, radii and lengths. A canonical fork ([`canonical`]) is contoured and filled once
 //! per cell. The map to a fork of the cell ([`image`]) moves its points with the three vessels, and those of the wall onto
@@ -12,6 +12,7 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
+use super::buried::buried;
 use super::params::{BlockParams, EndStyle};
 use super::topology::Topology;
 use crate::partition::Cluster;
@@ -53,6 +54,10 @@ pub(super) fn fork(cluster: &Cluster, params: &BlockParams) -> Option<FilledFork
         return None;
     }
     let fork = Fork::of(cluster)?;
+    // A tip inside another vessel has no cap.
+    if buried(cluster).next().is_some() {
+        return None;
+    }
     let canonical = cache::canonical(fork.cell()?, params)?;
     image::image(&canonical, &fork, cluster, params)
 }

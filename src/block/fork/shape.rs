@@ -2,6 +2,7 @@
 
 use crate::partition::{Cluster, ClusterEnd, CutId, EndKind};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
+use anastomesh_skeleton::NodeId;
 use std::f64::consts::TAU;
 
 /// Steps of a cell: azimuth in radians, height, logarithm of radii, logarithm of lengths.
@@ -14,34 +15,37 @@ const USUAL_LENGTH: f64 = 2.2;
 /// Largest sine of the angle between the axis of a vessel at its cut and its chord.
 const STRAIGHT: f64 = 1e-3;
 
-/// Vessel of a fork, from its node to its cut.
+/// Side of a terminal.
+pub const TIP: u8 = 2;
+
+/// Vessel of a fork, from its node to its cut or terminal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limb {
     /// Unit vector from the node.
     pub axis: Vec3,
-    /// Frame of the disc: two unit vectors that form a right-handed system with the axis.
+    /// Frame of the end: two unit vectors that form a right-handed system with the axis.
     pub frame: [Vec3; 2],
-    /// Length up to the cut.
+    /// Length up to the end.
     pub length: f64,
-    /// Radii at the node and at the cut.
+    /// Radii at the node and at the end.
     pub radii: [f64; 2],
-    /// Side of the cut.
+    /// Side of the cut, or [`TIP`].
     pub side: u8,
     /// Index of the end in the cluster.
     pub end: u32,
 }
 
-/// Bifurcation of three straight vessels up to their cuts.
+/// Bifurcation of three straight vessels up to their cuts or terminals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fork {
     pub node: Point3,
     /// Largest radius at the node, the unit of lengths of the canonical fork.
     pub radius: f64,
-    /// Vessels, those that end at the node first, then by radius.
+    /// Vessels: terminal ones first, then those that end at the node, each by radius.
     pub limbs: [Limb; 3],
 }
 
-/// Cell of similar forks: sides of the cuts, steps of height, azimuths, radii and lengths.
+/// Cell of similar forks: sides of the ends, steps of height, azimuths, radii and lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
     sides: [u8; 3],
@@ -58,18 +62,22 @@ impl Fork {
         if cluster.tubes.len() != 6 {
             return None;
         }
+        let up = cluster.ends.iter().find_map(|end| end.section.up);
         let mut node = None;
         let mut limbs = Vec::with_capacity(3);
         for (end, index) in cluster.ends.iter().zip(0..) {
-            let EndKind::Cut { side, .. } = end.kind else { return None };
+            let side = match end.kind {
+                EndKind::Cut { side, .. } if end.section.up == up => side,
+                EndKind::Cut { .. } => return None,
+                EndKind::Terminal(_) => TIP,
+            };
             let (from, radii) = vessel(cluster, end)?;
             if *node.get_or_insert(from) != from {
                 return None;
             }
             let chord = end.section.origin - from;
             let length = chord.norm();
-            end.section.up?;
-            let (u, w) = end.section.frame();
+            let (u, w) = Section { up: Some(up?), ..end.section }.frame();
             if !(length > 0.0 && chord.cross(&end.section.axis).norm() <= STRAIGHT * length) {
                 return None;
             }
@@ -145,7 +153,10 @@ impl Cell {
             cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
             cluster.tubes.push(Tube { a: at, b: at + axis * (overrun * to), ra: to, rb: to });
             let section = Section { up: Some(Vec3::z()), ..Section::new(at, axis, to) };
-            let kind = EndKind::Cut { cut: CutId(i as u32), side: self.sides[i] };
+            let kind = match self.sides[i] {
+                TIP => EndKind::Terminal(NodeId(i as u32)),
+                side => EndKind::Cut { cut: CutId(i as u32), side },
+            };
             cluster.ends.push(ClusterEnd { section, kind, overrun: index });
         }
         cluster

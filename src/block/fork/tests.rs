@@ -8,6 +8,7 @@ use crate::block::{BlockParams, EndStyle, Finished, mesh_cluster};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_mesh::quality::TetQuality;
+use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Watch;
 use nalgebra::Rotation3;
 
@@ -78,6 +79,25 @@ fn volume(block: &Finished) -> f64 {
         (b - a).cross(&(c - a)).dot(&(d - a)) / 6.0
     };
     block.mesh.tets.iter().map(of).sum()
+}
+
+#[test]
+fn a_vessel_may_end_at_a_terminal() {
+    let mut input = cluster(Point3::new(3.0, 2.0, 1.0), turned(0.7), 0.1, plain());
+    input.ends[2].kind = EndKind::Terminal(NodeId(7));
+    input.ends[2].section.up = None;
+    assert!(fork(&input, &shared()).is_some());
+    let made = mesh_cluster(ClusterId(0), &input, &shared()).expect("a cluster");
+    let block = Finished::of_cluster(made, |node| node.0).expect("its ends are on its boundary");
+    assert!(block.certificate.is_sound(), "{:?}", block.certificate.broken_line());
+    assert_eq!((block.joints.len(), block.caps.len(), block.caps[0].node), (2, 1, NodeId(7)));
+    // A terminal inside another vessel is left to the contour.
+    let mut buried = input.clone();
+    for tube in &mut buried.tubes[..2] {
+        (tube.ra, tube.rb) = (9.0, 9.0);
+    }
+    buried.ends[0].section.radius = 9.0;
+    assert!(fork(&buried, &shared()).is_none());
 }
 
 #[test]

@@ -14,13 +14,14 @@ impl Layout {
     }
 
     /// Normal of the plane through the three vessels of a cluster, at equal distances from their node; `None` for other
-    /// clusters.
+    /// clusters. A vessel ends at a cut or at a terminal.
     fn normal_of_fork(&self, cluster: ClusterId) -> Option<Vec3> {
         let [a, b, c] = self.pieces_of(cluster.0 as usize) else { return None };
         let mut node = None;
         let mut ways = [Vec3::zeros(); 3];
         for (piece, way) in [a, b, c].into_iter().zip(&mut ways) {
-            let end = piece.cuts.iter().position(|&cut| cut == NONE).filter(|&end| piece.cuts[1 - end] != NONE)?;
+            let is_inner = |end: &usize| piece.cuts[*end] == NONE && !piece.terminals[*end];
+            let end = Some(0).filter(is_inner).or(Some(1).filter(is_inner)).filter(|end| !is_inner(&(1 - end)))?;
             let course = self.course(piece.branch);
             if *node.get_or_insert(course.branch.ends()[end]) != course.branch.ends()[end] {
                 return None;
