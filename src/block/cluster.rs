@@ -1,13 +1,15 @@
 //! Meshing of a cluster: by template if it is a tube or a fork of straight vessels, else by contouring.
 
-use super::contoured::{ClusterMesh, caps, check_shared, contoured, disc_ends, smallest_radius};
+use super::contoured::{ClusterMesh, ClusterWall, caps, check_shared, contoured, disc_ends, filled, smallest_radius};
 use super::error::BlockError;
+use super::faithful::Astray;
 use super::fork::fork;
 use super::lone_tube::lone_tube;
 use super::params::BlockParams;
 use super::topology::Topology;
 use crate::partition::{Cluster, ClusterId, EndKind};
-use anastomesh_mesh::TetMesh;
+use crate::surface::CappedSurface;
+use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_tet::parts::Watch;
 use std::sync::Arc;
 
@@ -30,6 +32,11 @@ pub(crate) fn mesh_cluster_watched(
     watch: &Watch,
 ) -> Result<ClusterMesh, BlockError> {
     params.check()?;
+    if params.layers.is_some()
+        && let Some(wall) = wall_of_fork(cluster, params)
+    {
+        return filled(id, cluster, wall, params, watch);
+    }
     let image = if let Some(tube) = lone_tube(cluster, params) {
         let triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
         let (discs, topology) = (tube.ends.to_vec(), Arc::clone(&tube.topology));
@@ -44,6 +51,20 @@ pub(crate) fn mesh_cluster_watched(
         return contoured(id, cluster, params, watch);
     };
     image.finished(id, cluster, params)
+}
+
+/// Wall of a fork by template, within which layers are made. It is the same as without layers.
+fn wall_of_fork(cluster: &Cluster, params: &BlockParams) -> Option<ClusterWall> {
+    let (mesh, triangles, discs) = fork(cluster, &BlockParams { layers: None, ..*params })?.kept(true);
+    let caps = (0..).zip(&discs).flat_map(|(end, disc)| vec![Some(end); disc.len()]);
+    let cap: Vec<Option<u32>> = caps.chain(std::iter::repeat(None)).take(triangles.len()).collect();
+    let surface = CappedSurface { mesh: TriMesh { points: mesh.points, triangles }, cap };
+    Some(ClusterWall { surface, voxel: voxel(cluster, params), astray: Astray::default(), closed_gaps: Vec::new() })
+}
+
+/// Cell size of a contouring grid.
+fn voxel(cluster: &Cluster, params: &BlockParams) -> f64 {
+    2.0 * smallest_radius(cluster) / params.rho
 }
 
 /// Image of a template.
@@ -62,7 +83,7 @@ struct Image {
 impl Image {
     fn finished(self, id: ClusterId, cluster: &Cluster, params: &BlockParams) -> Result<ClusterMesh, BlockError> {
         let Self { mesh, hull, discs, triangles, topology } = self;
-        let voxel = 2.0 * smallest_radius(cluster) / params.rho;
+        let voxel = voxel(cluster, params);
         let caps = caps(cluster, &discs);
         let mut out = ClusterMesh { mesh, hull, caps, voxel, surface_triangles: triangles, ..ClusterMesh::default() };
         out.ends = disc_ends(id, cluster, |end| discs[end as usize].clone(), &out.mesh)?;

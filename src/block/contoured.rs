@@ -90,7 +90,22 @@ pub(super) fn contoured(
     params: &BlockParams,
     watch: &Watch,
 ) -> Result<ClusterMesh, BlockError> {
-    let ClusterWall { surface, voxel, astray, closed_gaps } = cluster_surface(id, cluster, params, watch)?;
+    let wall = cluster_surface(id, cluster, params, watch)?;
+    filled(id, cluster, wall, params, watch)
+}
+
+/// Fills a cluster within its closed wall.
+///
+/// # Errors
+/// See [`contoured`].
+pub(super) fn filled(
+    id: ClusterId,
+    cluster: &Cluster,
+    wall: ClusterWall,
+    params: &BlockParams,
+    watch: &Watch,
+) -> Result<ClusterMesh, BlockError> {
+    let ClusterWall { surface, voxel, astray, closed_gaps } = wall;
     let edge = surface.mesh.mean_edge();
     let failed = |source| BlockError::of_filling(id, source);
     let FilledSurface { mesh, hull, discs, thin } = inside(cluster, &surface, params, watch).map_err(failed)?;
@@ -166,13 +181,13 @@ fn inside(
 /// Closed wall of a cluster.
 pub(super) struct ClusterWall {
     /// Wall with caps.
-    surface: CappedSurface,
+    pub surface: CappedSurface,
     /// Cell size of the contouring grid.
-    voxel: f64,
+    pub voxel: f64,
     /// Deviations from the vessels.
-    astray: Astray,
+    pub astray: Astray,
     /// Places of gaps that were closed.
-    closed_gaps: Vec<Point3>,
+    pub closed_gaps: Vec<Point3>,
 }
 
 /// Creates the closed wall of a cluster with its caps, for [`contoured`].

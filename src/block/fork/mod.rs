@@ -14,38 +14,9 @@ mod tests;
 
 use super::buried::buried;
 use super::params::{BlockParams, EndStyle};
-use super::topology::Topology;
 use crate::partition::Cluster;
-use anastomesh_mesh::{Kept, TetMesh};
+use image::FilledFork;
 use shape::Fork;
-use std::sync::Arc;
-
-/// Fork filled with tetrahedra.
-pub(super) struct FilledFork {
-    /// Points and tetrahedra.
-    pub mesh: TetMesh,
-    /// Triangles of the discs, in the order of the cluster's ends, facing outwards.
-    pub discs: [Vec<[u32; 3]>; 3],
-    /// Triangles of the wall, facing outwards.
-    pub wall: Vec<[u32; 3]>,
-    /// Topology of the tetrahedra, with the discs in the same order.
-    pub topology: Arc<Topology>,
-}
-
-impl FilledFork {
-    /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
-    pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>, [Vec<[u32; 3]>; 3]) {
-        let Self { mesh, discs, wall, .. } = self;
-        if !hollow {
-            return (mesh, Vec::new(), discs);
-        }
-        let hull: Vec<[u32; 3]> = discs.iter().chain([&wall]).flatten().copied().collect();
-        let kept = Kept::used(&hull, mesh.points.len(), 0);
-        let cells = |list: &[[u32; 3]]| list.iter().map(|t| kept.cell(t)).collect();
-        let points = kept.select(&mesh.points);
-        (TetMesh { points, tets: Vec::new() }, cells(&hull), discs.each_ref().map(|disc| cells(disc)))
-    }
-}
 
 /// Meshes a fork by template. Returns `None` for other clusters, and if no template fits.
 pub(super) fn fork(cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {

@@ -67,7 +67,7 @@ fn images_are_sound_and_as_good_as_contoured_forks() {
             assert_eq!(points(&image, &a.vertices), points(&direct, &b.vertices));
         }
         let [a, b] = [&image, &direct].map(|block| TetQuality::of(&block.mesh));
-        assert!(a.min > 0.3 && a.mean > b.mean - 0.01, "{i}: {a:?} {b:?}");
+        assert!(a.min > 0.3 && a.mean > b.mean - 0.02, "{i}: {a:?} {b:?}");
         let [a, b] = [&image, &direct].map(|block| volume(block));
         assert!((a / b - 1.0).abs() < 5e-3, "{i}: {a} {b}");
     }

@@ -1,34 +1,66 @@
 //! Frames of discs beside a bifurcation: their first vector is normal to the plane of the bifurcation. Bifurcations of the
 //! same shape thus have the same discs.
 
-use super::{Layout, NONE};
+use super::{LEG, Layout, NONE, Placed};
 use crate::partition::parts::{ClusterId, CutId};
 use anastomesh_mesh::geometry::Vec3;
+use anastomesh_skeleton::NodeId;
+use anastomesh_skeleton::course::{Course, Way};
+
+/// Maximum number of pieces of a cluster whose bifurcations count. Clusters have few, and each cut visits them all.
+const MOST_PIECES: usize = 32;
+
+/// Vessel at a bifurcation.
+struct Branch {
+    direction: Vec3,
+    /// Rank of its other end: a cut after it, a cut before it, or a terminal.
+    rank: u8,
+    /// Radius at its other end.
+    radius: f64,
+}
 
 impl Layout {
     /// First frame vectors of the discs on both sides of a cut, up to their components along the vessel. A vessel that leads to
     /// no bifurcation on one side has one frame. `None`: the frame depends on the axis alone.
     pub(super) fn ups(&self, cut: CutId) -> [Option<Vec3>; 2] {
-        let [first, second] = self.cuts[cut.0 as usize].sides.map(|(cluster, _)| self.normal_of_fork(cluster));
+        let cut = &self.cuts[cut.0 as usize];
+        let nodes = self.course(cut.branch).branch.ends();
+        let [first, second] = [0, 1].map(|side| self.normal_at(nodes[side], cut.sides[side].0));
         [first.or(second), second.or(first)]
     }
 
-    /// Normal of the plane through the three vessels of a cluster, at equal distances from their node; `None` for other
-    /// clusters. A vessel ends at a cut or at a terminal.
-    fn normal_of_fork(&self, cluster: ClusterId) -> Option<Vec3> {
-        let [a, b, c] = self.pieces_of(cluster.0 as usize) else { return None };
-        let mut node = None;
-        let mut ways = [Vec3::zeros(); 3];
-        for (piece, way) in [a, b, c].into_iter().zip(&mut ways) {
-            let is_inner = |end: &usize| piece.cuts[*end] == NONE && !piece.terminals[*end];
-            let end = Some(0).filter(is_inner).or(Some(1).filter(is_inner)).filter(|end| !is_inner(&(1 - end)))?;
-            let course = self.course(piece.branch);
-            if *node.get_or_insert(course.branch.ends()[end]) != course.branch.ends()[end] {
-                return None;
-            }
-            let [from, to] = [end, 1 - end].map(|end| self.arc_of(piece, &course)[end]);
-            *way = (course.point(to) - course.point(from)).try_normalize(0.0)?;
+    /// Normal of the plane through points at equal distances along three vessels that meet at a node of a cluster. `None` for
+    /// another number of vessels, and if the node is in no cluster or in a large one.
+    fn normal_at(&self, node: NodeId, cluster: ClusterId) -> Option<Vec3> {
+        let pieces = self.pieces_of(cluster.0 as usize);
+        if pieces.len() > MOST_PIECES {
+            return None;
         }
-        (ways[0] - ways[2]).cross(&(ways[1] - ways[2])).try_normalize(0.0)
+        let mut branches: Vec<Branch> = pieces.iter().flat_map(|piece| self.branches_at(node, piece)).collect();
+        branches.sort_by(|a, b| b.rank.cmp(&a.rank).then(b.radius.total_cmp(&a.radius)));
+        let [a, b, c] = <[Branch; 3]>::try_from(branches).ok()?.map(|branch| branch.direction);
+        (a - c).cross(&(b - c)).try_normalize(0.0)
+    }
+
+    /// Ends of a piece at a node.
+    fn branches_at(&self, node: NodeId, piece: &Placed) -> impl Iterator<Item = Branch> {
+        let course = self.course(piece.branch);
+        let is_there =
+            |&end: &usize| piece.cuts[end] == NONE && !piece.terminals[end] && course.branch.ends()[end] == node;
+        let ends: Vec<usize> = (0..2).filter(is_there).collect();
+        let branch = |end: usize| self.branch(piece, &course, end);
+        ends.into_iter().map(branch).collect::<Vec<_>>().into_iter()
+    }
+
+    fn branch(&self, piece: &Placed, course: &Course, end: usize) -> Branch {
+        let window = LEG * self.skeleton.node(course.branch.ends()[end]).radius;
+        let other = 1 - end;
+        let at = self.arc_of(piece, course)[other];
+        Branch {
+            // Directions out of a node are named in reverse.
+            direction: course.leaving([Way::Onward, Way::Back][end], window),
+            rank: if piece.terminals[other] { 2 } else { end as u8 },
+            radius: course.radius(at, Way::BOTH[other]),
+        }
     }
 }
