@@ -53,7 +53,7 @@ impl Topology {
 }
 
 impl Topology {
-    /// The same topology with its discs in another order.
+    /// Topology with its discs in another order.
     pub fn ordered(self: &Arc<Self>, order: &[usize]) -> Arc<Self> {
         if order.is_sorted() {
             return Arc::clone(self);

@@ -2,9 +2,9 @@
 //!
 //! With edges proportional to the radius, all discs of one ρ have equal corner counts. A vessel between two discs is
 //! then the image of a straight tube of radius 1. The map takes the axial position in radii, and the position in the
-//! disc, to the vessel. No filling is needed; longer vessels use several images in sequence. If the disc at the second end is
-//! rotated, the last template has its second disc rotated by a whole number of corners, and the map turns by the rest. If
-//! taper, bend or twist spoil a tetrahedron, the tube is meshed individually.
+//! disc, to the vessel. No filling is needed; longer vessels use several images in sequence. The disc at the second end may
+//! be rotated. The last template then has its second disc rotated by a whole number of corners, and the map turns by the
+//! rest. If taper, bend or twist spoil a tetrahedron, the tube is meshed individually.
 
 mod canonical;
 mod joined;
