@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
-use crate::block::{BlockDump, BlockError, BlockInput, BlockParams};
+use crate::block::{BlockDump, BlockError, BlockInput, BlockParams, template_of};
 use crate::partition::{Cluster, ClusterId, Cut, Layout};
 use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells};
 use anastomesh_mesh::geometry::Tube;
@@ -216,7 +216,7 @@ fn gibibytes(bytes: u64) -> String {
 /// Cost of a cluster. One whose grid does not fit into memory fails before it is made, and costs only what it is without.
 fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let cost = cluster_cost(cluster, plan);
-    let without_grid = Cost { wall: cost.wall, ..of_tets(cost.tets) };
+    let without_grid = Cost { wall: cost.wall, template: cost.template, ..of_tets(cost.tets) };
     if cost.bytes > plan.memory && without_grid.bytes <= plan.memory { without_grid } else { cost }
 }
 
@@ -232,7 +232,7 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     // Adjacent places along a vessel are a radius apart.
     let radii = if matches!(plan.size_at, Some(SizeAt::Field(_))) { 1.0 } else { FINE_RADII };
     let tets = plain.tets + TETS * libm::pow(plan.rho, POWER) * radii * finer;
-    let cost = Cost { wall: plain.wall, ..of_tets(tets) };
+    let cost = Cost { wall: plain.wall, template: template_of(cluster), ..of_tets(tets) };
     let cells = cells(cluster, thin, plan);
     // An attempt with more cells fails before it makes a grid.
     if cells > MAX_CELLS as f64 {
@@ -321,5 +321,5 @@ fn wall(radii: f64, plan: &MeshPlan) -> f64 {
 fn of_tets(tets: f64) -> Cost {
     // Casts of what is too large, or no number, end at the largest integer.
     let bytes = (BYTES_PER_BLOCK + BYTES_PER_TET * tets) as u64;
-    Cost { tets, bytes, operations: PER_TET * tets, wall: 0.0 }
+    Cost { tets, bytes, operations: PER_TET * tets, ..Cost::default() }
 }

@@ -116,8 +116,8 @@ fn on_cap(p: &Point3, from: &Fork, to: &Fork, limb: usize) -> Point3 {
     to.node + with_limb(&(p - from.node), 1.0, [&from.limbs[limb], &to.limbs[limb]])
 }
 
-/// Moves a point to a level of the field, within a plane with the given normal; `None` if it does not get there, or moves
-/// further than `far`.
+/// Moves a point to a level of the field; `None` if it does not get there, or moves further than `far`. `plane`: normal of
+/// the plane that the point stays in.
 fn at_level(field: &mut Field, start: Point3, level: f64, plane: Option<Vec3>, far: f64) -> Option<Point3> {
     let mut p = start;
     for _ in 0..=STEPS {

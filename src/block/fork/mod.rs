@@ -16,7 +16,15 @@ use super::buried::buried;
 use super::params::{BlockParams, EndStyle};
 use crate::partition::Cluster;
 use image::FilledFork;
+use rustc_hash::FxBuildHasher;
 use shape::Fork;
+use std::hash::BuildHasher;
+
+/// Number of the template of a fork; 0 for other clusters.
+pub fn template_of(cluster: &Cluster) -> u32 {
+    let cell = Fork::of(cluster).and_then(|fork| fork.cell());
+    cell.map_or(0, |cell| FxBuildHasher.hash_one(cell) as u32 | 1)
+}
 
 /// Meshes a fork by template. Returns `None` for other clusters, and if no template fits.
 pub(super) fn fork(cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 /// Steps of a cell: azimuth in radians, height, logarithm of radii, logarithm of lengths.
 const AZIMUTH: f64 = TAU / 18.0;
 const HEIGHT: f64 = 0.3;
-const RADIUS: f64 = 0.4;
-const LENGTH: f64 = 0.4;
+const RADIUS: f64 = 0.25;
+const LENGTH: f64 = 0.3;
 /// Length of a vessel in the middle of a cell, in radii: about the distance of most cuts.
 const USUAL_LENGTH: f64 = 2.2;
 /// Largest sine of the angle between the axis of a vessel at its cut and its chord.
