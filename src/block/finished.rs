@@ -103,12 +103,11 @@ impl Finished {
     pub fn of_cluster(cluster: ClusterMesh, original: impl Fn(NodeId) -> u32) -> Result<Self, NotOnBoundary> {
         let ClusterMesh { mesh, hull, ends, caps, topology, .. } = cluster;
         let ClusterMesh { uncapped, astray, handles, loops, filled, thin, closed_gaps, .. } = cluster;
-        let topology = match topology {
-            Some(topology) => topology,
-            None => {
-                let discs = ends.iter().map(|end| &end.triangles).chain(caps.iter().map(|cap| &cap.triangles));
-                Arc::new(topology_of(&mesh, &hull, discs)?)
-            }
+        let topology = if let Some(topology) = topology {
+            topology
+        } else {
+            let discs = ends.iter().map(|end| &end.triangles).chain(caps.iter().map(|cap| &cap.triangles));
+            Arc::new(topology_of(&mesh, &hull, discs)?)
         };
         let (joints, of_caps) = topology.discs.split_at(ends.len());
         let cap = |(cap, disc): (&CapFaces, &FinishedJoint)| FinishedCap {
@@ -131,21 +130,20 @@ impl Finished {
     pub fn of_connector(connector: ConnectorMesh, ends: [&EndSurface; 2]) -> Result<Self, NotOnBoundary> {
         let ConnectorMesh { mesh, hull, shared, thin, topology, .. } = connector;
         let about = About { thin, ..About::default() };
-        let topology = match topology {
-            Some(topology) => topology,
-            None => {
-                let mut base = 0;
-                let discs = ends.map(|end| {
-                    let vertices = end.vertices();
-                    // The connector has the ends' vertices in ascending order, and their triangles reversed.
-                    let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
-                    let reversed = |t: &[u32; 3]| [local(t[0]), local(t[2]), local(t[1])];
-                    let triangles: Vec<[u32; 3]> = end.triangles.iter().map(reversed).collect();
-                    base += vertices.len() as u32;
-                    triangles
-                });
-                Arc::new(topology_of(&mesh, &hull, &discs)?)
-            }
+        let topology = if let Some(topology) = topology {
+            topology
+        } else {
+            let mut base = 0;
+            let discs = ends.map(|end| {
+                let vertices = end.vertices();
+                // The connector has the ends' vertices in ascending order, and their triangles reversed.
+                let local = |v: u32| base + vertices.partition_point(|&x| x < v) as u32;
+                let reversed = |t: &[u32; 3]| [local(t[0]), local(t[2]), local(t[1])];
+                let triangles: Vec<[u32; 3]> = end.triangles.iter().map(reversed).collect();
+                base += vertices.len() as u32;
+                triangles
+            });
+            Arc::new(topology_of(&mesh, &hull, &discs)?)
         };
         let (wall, joints) = (topology.wall.clone(), topology.discs.clone());
         let connector = Self { mesh, hull, shared: shared.len() as u32, wall, joints, about, ..Self::default() };

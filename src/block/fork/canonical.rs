@@ -65,7 +65,7 @@ impl Canonical {
         let mut level =
             |v: u32| Level { vertex: v, value: field.value(&mesh.points[v as usize]), rim: limb_of.get(&v).copied() };
         let levels =
-            free.into_iter().map(&mut level).filter(|level| !level.rim.is_some_and(|i| fork.limbs[i].side != TIP));
+            free.into_iter().map(&mut level).filter(|level| level.rim.is_none_or(|i| fork.limbs[i].side == TIP));
         let levels = levels.collect();
         let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
         Some(Self { fork, points: mesh.points, tets, discs, wall, levels, topology: Arc::new(topology) })

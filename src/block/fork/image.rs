@@ -25,6 +25,9 @@ const LEAST_ANGLE: f64 = 16.0;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
 
+/// Triangles by their vertices.
+type Triangles = Vec<[u32; 3]>;
+
 /// Fork filled with tetrahedra.
 pub struct FilledFork {
     /// Points and tetrahedra.
@@ -39,7 +42,7 @@ pub struct FilledFork {
 
 impl FilledFork {
     /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
-    pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>, [Vec<[u32; 3]>; 3]) {
+    pub fn kept(self, hollow: bool) -> (TetMesh, Triangles, [Triangles; 3]) {
         let Self { mesh, discs, wall, .. } = self;
         if !hollow {
             return (mesh, Vec::new(), discs);

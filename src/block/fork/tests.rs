@@ -43,14 +43,14 @@ fn shared() -> BlockParams {
 
 #[test]
 fn images_are_sound_and_as_good_as_contoured_forks() {
-    let shapes = [
-        plain(),
-        [(-9.0, 2.4, [1.0, 1.2]), (110.0, 2.0, [1.0, 0.8]), (-120.0, 2.1, [1.0, 0.7])],
-        [(0.0, 2.2, [1.0, 1.0]), (140.0, 2.0, [0.8, 0.8]), (-140.0, 2.0, [0.8, 0.8])],
-    ];
-    for (i, vessels) in shapes.into_iter().enumerate() {
-        let input = cluster(Point3::new(100.0, -3.0, 7.0), turned(1.0 + i as f64), 0.1 * i as f64, vessels);
-        let made = fork(&input, &shared()).expect("a fork");
+    let mut images = 0;
+    for i in 0..9 {
+        let vary = |k: u32, by: f64| by * (f64::from((7 * i + 3 * k) % 9) / 4.0 - 1.0);
+        let limb = |k: u32, azimuth| (azimuth + vary(k, 15.0), 2.25 + vary(k + 1, 0.2), [1.0, 1.0 + vary(k + 2, 0.1)]);
+        let vessels = [limb(0, 0.0), limb(1, 120.0), limb(2, 240.0)];
+        let input = cluster(Point3::new(100.0, -3.0, 7.0), turned(1.0 + f64::from(i)), vary(3, 0.2), vessels);
+        let Some(made) = fork(&input, &shared()) else { continue };
+        images += 1;
         let topology = Topology::of(&made.mesh, made.discs.iter().map(Vec::as_slice));
         assert_eq!(*made.topology, topology.expect("its discs are on its boundary"), "{i}");
         let [image, direct] =
@@ -67,10 +67,11 @@ fn images_are_sound_and_as_good_as_contoured_forks() {
             assert_eq!(points(&image, &a.vertices), points(&direct, &b.vertices));
         }
         let [a, b] = [&image, &direct].map(|block| TetQuality::of(&block.mesh));
-        assert!(a.min > 0.3 && a.mean > b.mean - 0.02, "{i}: {a:?} {b:?}");
-        let [a, b] = [&image, &direct].map(|block| volume(block));
+        assert!(a.min > 0.3 && a.mean > b.mean - 0.03, "{i}: {a:?} {b:?}");
+        let [a, b] = [&image, &direct].map(volume);
         assert!((a / b - 1.0).abs() < 5e-3, "{i}: {a} {b}");
     }
+    assert!(images > 5, "{images}");
 }
 
 fn volume(block: &Finished) -> f64 {
