@@ -22,8 +22,8 @@ pub struct Cost {
 /// Maximum number of blocks with one template that a thread makes in sequence.
 const IN_SEQUENCE: usize = 16;
 
-/// Blocks in the order of making, in runs that one thread makes in sequence. Costs decrease by factors of 2; in between,
-/// blocks that share a template follow each other, so that few templates are in use at a time.
+/// Blocks in the order of making, in runs that one thread makes in sequence. Costs decrease by factors of 2. Of similar cost,
+/// blocks that share a template follow each other, so that few templates are in use.
 fn runs(costs: &[Cost]) -> (Vec<u32>, Vec<Range<usize>>) {
     let mut order: Vec<u32> = (0..costs.len() as u32).collect();
     let cost = |i: u32| &costs[i as usize];
