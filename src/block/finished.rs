@@ -10,7 +10,7 @@ use super::faithful::Astray;
 use super::layered::ThinLayers;
 use super::topology::{FinishedJoint, Topology};
 use crate::partition::CutId;
-use anastomesh_mesh::adjacency::face_vertices;
+use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
 use anastomesh_mesh::check::parts::{Certificate, PartView, certify_hollow, certify_with};
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::{Cap, TetMesh};
@@ -156,6 +156,10 @@ impl Finished {
         let cap = |cap: &FinishedCap| (cap.disc(original(cap.node)), self.triangles(&cap.faces));
         let caps: Vec<_> = self.caps.iter().map(cap).collect();
         let view = PartView { mesh: &self.mesh, joints: &joints, caps: &caps };
+        debug_assert!(
+            !self.hull.is_empty() || topology.adjacency == tet_adjacency(&self.mesh.tets, self.mesh.points.len()),
+            "the topology is that of a template with other tetrahedra"
+        );
         self.certificate = if self.hull.is_empty() {
             certify_with(&view, || &topology.adjacency)
         } else {

@@ -50,9 +50,7 @@ impl Topology {
         let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
         Ok(Self { adjacency: TetAdjacency::default(), discs, wall: faces.rest() })
     }
-}
 
-impl Topology {
     /// Topology with its discs in another order.
     pub fn ordered(self: &Arc<Self>, order: &[usize]) -> Arc<Self> {
         if order.is_sorted() {

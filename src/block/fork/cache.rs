@@ -6,8 +6,8 @@ use crate::block::params::BlockParams;
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-/// Number of recently used forks that are kept, at about 40 kB each. Up to twice as many are in memory.
-const RECENT: usize = 128;
+/// Number of recently used forks that are kept, at about 40 kB each for ρ = 3. Up to twice as many are in memory.
+const RECENT: usize = 64;
 
 /// Cell, and the bits of ρ and of the core factor.
 type Key = (Cell, [u64; 2]);

@@ -20,6 +20,9 @@ use rustc_hash::FxBuildHasher;
 use shape::Fork;
 use std::hash::BuildHasher;
 
+/// Maximum ρ. Larger canonical forks would take much memory, and more than a second that cannot be cancelled.
+const FINEST: f64 = 6.0;
+
 /// Number of the template of a fork; 0 for other clusters.
 pub fn template_of(cluster: &Cluster) -> u32 {
     let cell = Fork::of(cluster).and_then(|fork| fork.cell());
@@ -28,7 +31,8 @@ pub fn template_of(cluster: &Cluster) -> u32 {
 
 /// Meshes a fork by template. Returns `None` for other clusters, and if no template fits.
 pub(super) fn fork(cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {
-    let usual = params.ends == EndStyle::Shared && params.by_template() && params.layers.is_none();
+    let usual =
+        params.ends == EndStyle::Shared && params.by_template() && params.layers.is_none() && params.rho <= FINEST;
     if !usual || !cluster.fine.is_empty() {
         return None;
     }

@@ -43,13 +43,11 @@ impl Layout {
     }
 
     /// Ends of a piece at a node.
-    fn branches_at(&self, node: NodeId, piece: &Placed) -> impl Iterator<Item = Branch> {
+    fn branches_at(&self, node: NodeId, piece: &Placed) -> Vec<Branch> {
         let course = self.course(piece.branch);
         let is_there =
             |&end: &usize| piece.cuts[end] == NONE && !piece.terminals[end] && course.branch.ends()[end] == node;
-        let ends: Vec<usize> = (0..2).filter(is_there).collect();
-        let branch = |end: usize| self.branch(piece, &course, end);
-        ends.into_iter().map(branch).collect::<Vec<_>>().into_iter()
+        (0..2).filter(is_there).map(|end| self.branch(piece, &course, end)).collect()
     }
 
     fn branch(&self, piece: &Placed, course: &Course, end: usize) -> Branch {

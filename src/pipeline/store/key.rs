@@ -62,6 +62,7 @@ impl KeyMaker {
         self.point(&s.origin);
         self.vector(&s.axis);
         self.float(s.radius);
+        self.id(u32::from(s.up.is_some()));
         s.up.iter().for_each(|up| self.vector(up));
     }
 
