@@ -18,6 +18,7 @@ mod finished;
 mod fork;
 mod free_ends;
 mod graph;
+mod hull;
 mod layered;
 mod lone_tube;
 mod loops;

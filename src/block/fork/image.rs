@@ -2,14 +2,15 @@
 
 use super::canonical::Canonical;
 use super::shape::{Fork, Limb, TIP};
+use crate::block::hull::{Triangles, hull};
 use crate::block::layered::disc_at_end;
 use crate::block::params::BlockParams;
 use crate::block::topology::Topology;
 use crate::partition::Cluster;
 use crate::surface::Field;
+use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::{dihedral_range, radius_ratio};
-use anastomesh_mesh::{Kept, TetMesh};
 use std::sync::Arc;
 
 /// Decrease of a limb's weight per length of the limb.
@@ -25,17 +26,14 @@ const LEAST_ANGLE: f64 = 16.0;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
 
-/// Triangles by their vertices.
-type Triangles = Vec<[u32; 3]>;
-
 /// Fork filled with tetrahedra.
 pub struct FilledFork {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
     /// Triangles of the discs, in the order of the cluster's ends, facing outwards.
-    pub discs: [Vec<[u32; 3]>; 3],
+    pub discs: [Triangles; 3],
     /// Triangles of the wall, facing outwards.
-    pub wall: Vec<[u32; 3]>,
+    pub wall: Triangles,
     /// Topology of the tetrahedra, with the discs in the same order.
     pub topology: Arc<Topology>,
 }
@@ -43,22 +41,14 @@ pub struct FilledFork {
 impl FilledFork {
     /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
     pub fn kept(self, hollow: bool) -> (TetMesh, Triangles, [Triangles; 3]) {
-        let Self { mesh, discs, wall, .. } = self;
-        if !hollow {
-            return (mesh, Vec::new(), discs);
-        }
-        let hull: Vec<[u32; 3]> = discs.iter().chain([&wall]).flatten().copied().collect();
-        let kept = Kept::used(&hull, mesh.points.len(), 0);
-        let cells = |list: &[[u32; 3]]| list.iter().map(|t| kept.cell(t)).collect();
-        let points = kept.select(&mesh.points);
-        (TetMesh { points, tets: Vec::new() }, cells(&hull), discs.each_ref().map(|disc| cells(disc)))
+        if hollow { hull(&self.mesh.points, &self.discs, &self.wall) } else { (self.mesh, Vec::new(), self.discs) }
     }
 }
 
 /// Returns the image; `None` if it does not fit or has poor tetrahedra.
 pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {
     let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p, &canonical.fork, fork)).collect();
-    let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
+    let mut discs: [Triangles; 3] = Default::default();
     for (i, limb) in fork.limbs.iter().enumerate() {
         discs[limb.end as usize].clone_from(&canonical.discs[i]);
         if limb.side == TIP {

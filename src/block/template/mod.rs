@@ -11,13 +11,14 @@ mod joined;
 #[cfg(test)]
 mod tests;
 
+use super::hull::hull;
 use super::params::BlockParams;
 use super::path::AxisPath;
 use super::topology::Topology;
 use crate::surface::SharedDisc;
+use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_mesh::quality::radius_ratio;
-use anastomesh_mesh::{Kept, TetMesh};
 use canonical::Template;
 use joined::{Part, joined};
 use std::f64::consts::TAU;
@@ -62,10 +63,8 @@ impl FilledTube {
         if !hollow {
             return (self.mesh, Vec::new());
         }
-        let triangles: Vec<[u32; 3]> = self.ends.iter().chain([&self.wall]).flatten().copied().collect();
-        let kept = Kept::used(&triangles, self.mesh.points.len(), 0);
-        let points = kept.select(&self.mesh.points);
-        (TetMesh { points, tets: Vec::new() }, triangles.iter().map(|t| kept.cell(t)).collect())
+        let (mesh, triangles, _) = hull(&self.mesh.points, &self.ends, &self.wall);
+        (mesh, triangles)
     }
 }
 
