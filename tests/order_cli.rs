@@ -165,16 +165,21 @@ fn other_formats_and_options_are_refused() {
     let at = |name: &str| folder.path().join(name);
     let tree = fixture("tree_30.vtp");
     for (name, options, words) in [
-        ("tree.mesh", &["--order", "2"][..], ".vtu, .msh, .msh2 or .npyd"),
-        ("tree.pvtu", &["--order", "2"], ".vtu, .msh, .msh2 or .npyd"),
-        ("tree.foam", &["--order", "2"], ".vtu, .msh, .msh2 or .npyd"),
+        ("tree.mesh", &["--order", "2"][..], ".vtu, .msh, .msh2, .npyd or .svmesh"),
+        ("tree.pvtu", &["--order", "2"], ".vtu, .msh, .msh2, .npyd or .svmesh"),
+        ("tree.foam", &["--order", "2"], ".vtu, .msh, .msh2, .npyd or .svmesh"),
         ("tree.vtu", &["--order", "3"], "1..=2"),
         ("tree.vtu", &["--order", "2", "--layers", "2", "--prisms"], "--order 2 does not combine with --prisms"),
         ("tree.msh", &["--order", "2", "--parts", "2"], "--order 2 does not combine with --parts"),
         ("tree.vtu", &["--order", "2", "--cells", "tets"], "--order 2 does not combine with --cells tets"),
+        (
+            "tree.svmesh",
+            &["--order", "2", "--wall", "0.2r"],
+            "--order 2 does not combine with regions around the lumen",
+        ),
     ] {
         assert_says(&mesh(&tree, &at(name), options), USAGE, &[words]);
     }
     let surface = save(&folder, "ball.off", &sphere(6));
-    assert_says(&fill(&surface, &at("ball.ele"), &["--order", "2"]), USAGE, &[".vtu, .msh, .msh2 or .npyd"]);
+    assert_says(&fill(&surface, &at("ball.ele"), &["--order", "2"]), USAGE, &[".vtu, .msh, .msh2, .npyd or .svmesh"]);
 }

@@ -142,7 +142,7 @@ class Mesh:
         """Writes the mesh (.vtu, .pvtu, .msh, .msh2, .mesh, .foam, .svmesh, .ele, .npyd) or its boundary (.stl, .ply, .obj, .off,
         .glb, .3mf, .vtp); the keyword arguments are those of ``convert``.
 
-        Only .vtu, .msh, .msh2 and .npyd keep the midpoints of second order. Other formats leave them out with a warning.
+        Only .vtu, .msh, .msh2, .npyd and .svmesh keep the midpoints of second order. Other formats leave them out with a warning.
         """
         _files.save(self, path, options)
 

@@ -23,7 +23,7 @@ use anastomesh_io::npy;
 use anastomesh_io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
-use anastomesh_io::volume::{MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
+use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::second_order::SecondOrder;
@@ -190,8 +190,12 @@ impl Args {
     fn kept_midpoints<'a>(&self, opened: &'a OpenedMesh, to: FileKind) -> Result<Option<&'a SecondOrder>, Failure> {
         let Some(second) = opened.second_order() else { return Ok(None) };
         let divides = self.format.prisms || self.format.parts.is_some();
-        if to == FileKind::Mesh && !divides && self.format.of(&self.output)?.has_second_order() {
-            return Ok(Some(second));
+        if to == FileKind::Mesh && !divides {
+            let format = self.format.of(&self.output)?;
+            let is_coupled = format == MeshFormat::SimVascular && !opened.notes().regions.is_empty();
+            if format.has_second_order() && !is_coupled {
+                return Ok(Some(second));
+            }
         }
         log::warning(&format!(
             "{}: midpoints of second-order elements left out: the output is linear",

@@ -212,7 +212,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.format.parts.is_some() && !domain.is_plain() && format != MeshFormat::Pvtu {
         return Err(Failure::usage("--parts with regions around the lumen needs .pvtu"));
     }
-    args.order.check(Some(format), &args.besides_order())?;
+    let coupled = format == MeshFormat::SimVascular && !domain.is_plain();
+    let others = [&args.besides_order()[..], &[("regions around the lumen in .svmesh", coupled)]].concat();
+    args.order.check(Some(format), &others)?;
     ensure_writable_as(format, &args.output).map_err(|e| Failure::input(e.to_string()))?;
     ensure_text_writable(&args.table()).map_err(|e| args.no_table(&e))?;
     args.certificate.ensure_writable(format)?;
@@ -403,7 +405,7 @@ impl Args {
         };
         notes.regions = domain.as_ref().map_or_else(Vec::new, |domain| domain.list().to_vec());
         let second = bars
-            .during(Stage::Check, || self.order.balanced(written, &made.network, check, &notes))
+            .during(Stage::Check, || self.order.balanced(written, &made.network, check, &notes, bars))
             .map_err(|e| failed(&e))?;
         let options = options.second_order(second.as_ref().map(|second| &second.midpoints));
         let (written, check): (&dyn MeshSource, _) =

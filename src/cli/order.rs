@@ -4,8 +4,9 @@ use super::exit::Failure;
 use crate::pipeline::{Estimate, TooLarge};
 use anastomesh_io::volume::{MeshFormat, MeshNotes};
 use anastomesh_mesh::VolumeMesh;
-use anastomesh_mesh::check::{CheckReport, check_regions};
+use anastomesh_mesh::check::{CheckReport, check_regions_watched};
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::second_order::{Curving, SecondOrder};
 use anastomesh_mesh::source::{MeshSource, gather};
 use anastomesh_skeleton::{Skeleton, Tubes};
@@ -16,8 +17,8 @@ const BYTES_PER_TET: f64 = 320.0;
 
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct OrderArgs {
-    /// Order of the elements: 1, or 2 for ten-node tetrahedra whose midpoints lie on smooth walls and interfaces (VTU, MSH and
-    /// .npyd, in memory)
+    /// Order of the elements: 1, or 2 for ten-node tetrahedra whose midpoints lie on smooth walls and interfaces (VTU, MSH,
+    /// .npyd and .svmesh, in memory)
     #[arg(long, value_name = "ORDER", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     order: u8,
 }
@@ -34,11 +35,11 @@ pub struct SecondOrderMesh {
 }
 
 impl SecondOrderMesh {
-    fn of(corners: VolumeMesh, notes: &MeshNotes, is_balanced: bool) -> Self {
-        let (midpoints, curving) = SecondOrder::curved(&corners);
-        let check = check_regions(&corners, &notes.regions, notes.expectation.as_ref());
+    fn of(corners: VolumeMesh, notes: &MeshNotes, is_balanced: bool, progress: &dyn Progress) -> io::Result<Self> {
+        let (midpoints, curving) = SecondOrder::curved_watched(&corners, progress)?;
+        let check = check_regions_watched(&corners, &notes.regions, notes.expectation.as_ref(), progress)?;
         let check = check.with_second_order(&corners, &midpoints);
-        Self { corners, midpoints, curving, check, is_balanced }
+        Ok(Self { corners, midpoints, curving, check, is_balanced })
     }
 }
 
@@ -54,7 +55,9 @@ impl OrderArgs {
             return Ok(());
         }
         if !format.is_some_and(MeshFormat::has_second_order) {
-            return Err(Failure::usage("--order 2 is not supported by this format: use .vtu, .msh, .msh2 or .npyd"));
+            return Err(Failure::usage(
+                "--order 2 is not supported by this format: use .vtu, .msh, .msh2, .npyd or .svmesh",
+            ));
         }
         match others.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Failure::usage(format!("--order 2 does not combine with {option}"))),
@@ -73,8 +76,8 @@ impl OrderArgs {
     }
 
     /// Midpoints on surfaces through the vertices of a mesh; `None` for linear elements.
-    pub fn midpoints(self, volume: &VolumeMesh) -> Option<(SecondOrder, Curving)> {
-        self.is_second().then(|| SecondOrder::curved(volume))
+    pub fn midpoints(self, volume: &VolumeMesh, progress: &dyn Progress) -> io::Result<Option<(SecondOrder, Curving)>> {
+        self.is_second().then(|| SecondOrder::curved_watched(volume, progress)).transpose()
     }
 
     /// Second-order mesh of a network whose wall lies on the vessels' radius; `None` for linear elements. If the mesh with moved vertices
@@ -85,6 +88,7 @@ impl OrderArgs {
         network: &Skeleton,
         check: &CheckReport,
         notes: &MeshNotes,
+        progress: &dyn Progress,
     ) -> io::Result<Option<SecondOrderMesh>> {
         if !self.is_second() {
             return Ok(None);
@@ -93,10 +97,10 @@ impl OrderArgs {
         let mut moved = given.clone();
         let tubes = Tubes::of(network);
         moved.mesh.points = SecondOrder::balanced_points(&given, &|p| onto_radius(&tubes, p));
-        let balanced = SecondOrderMesh::of(moved, notes, true);
+        let balanced = SecondOrderMesh::of(moved, notes, true, progress)?;
         let faults = |check: &CheckReport| check.failed().map(|failed| failed.count.max(1)).sum::<u64>();
         let is_sound = faults(&balanced.check) <= faults(check);
-        Ok(Some(if is_sound { balanced } else { SecondOrderMesh::of(given, notes, false) }))
+        Ok(Some(if is_sound { balanced } else { SecondOrderMesh::of(given, notes, false, progress)? }))
     }
 
     /// The option as command-line text, if it is not the default.

@@ -9,7 +9,7 @@ use super::organ::{Surroundings, Vessels};
 use super::plan::{DomainPlan, ShellPlan, Site, TissuePlan};
 use super::surface::LumenSurface;
 use super::unfold::unfold;
-use anastomesh_mesh::check::{CheckReport, Expectation, check_regions};
+use anastomesh_mesh::check::{CheckReport, Expectation, check_regions_watched};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::source::MeshSource;
@@ -82,7 +82,7 @@ impl Domain {
         drop(layout);
         drop((tissue, shells, surface, around));
         progress.at(Stage::Check, 0, 0);
-        let check = check_regions(&mesh, &regions, Some(expectation));
+        let check = check_regions_watched(&mesh, &regions, Some(expectation), progress)?;
         Ok(Self { mesh, regions, shells: report, check })
     }
 }

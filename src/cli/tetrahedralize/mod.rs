@@ -23,7 +23,7 @@ use super::exit::{Exit, Failure};
 use super::fidelity::conclude;
 use super::format::NO_PARTS;
 use super::log;
-use super::stop::Stop;
+use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::page::{self, Mark, Section};
 use crate::report::rows::row;
 use crate::report::tetrahedralize::{
@@ -115,7 +115,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         input.leave_out(&made.summary.left_out.segments);
         let layers = std::mem::take(&mut made.layers);
         let volume = output::volume(made, &input);
-        let midpoints = watch.time("write", || pool.install(|| args.order.midpoints(&volume)));
+        let midpoints = watch.time("write", || pool.install(|| args.order.midpoints(&volume, &listener)));
+        let midpoints = midpoints.map_err(|_| Failure::stopped(NOTHING_KEPT))?;
         report.second_order = midpoints.as_ref().map(|midpoints| midpoints.1);
         let mesh =
             MeshParts { volume: &volume, layers: &layers, second_order: midpoints.as_ref().map(|found| &found.0) };

@@ -6,7 +6,7 @@ use super::plan::EmbedPlan;
 use super::sources::sources;
 use crate::error::DomainError;
 use crate::plan::TISSUE;
-use anastomesh_mesh::check::{CheckReport, check_regions};
+use anastomesh_mesh::check::{CheckReport, check_regions_watched};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_mesh::{NamedRegion, Patch, TriMesh, VolumeMesh, WALL};
@@ -62,7 +62,7 @@ impl Embedding {
         let pieces = Pieces::of(&mesh.mesh, network, progress)?;
         let regions = vec![NamedRegion::new(TISSUE_ID, TISSUE)];
         progress.at(Stage::Check, 0, 0);
-        let check = check_regions(&mesh, &regions, None);
+        let check = check_regions_watched(&mesh, &regions, None, progress)?;
         Ok(Self { mesh, regions, pieces, check })
     }
 }

@@ -93,9 +93,9 @@ impl MeshFormat {
         matches!(self, Self::OpenFoam | Self::Pvtu | Self::Msh)
     }
 
-    /// True if second-order meshes can be written.
+    /// True if second-order meshes can be written, to [`Self::SimVascular`] without regions only.
     pub fn has_second_order(self) -> bool {
-        matches!(self, Self::Vtu | Self::Msh | Self::Msh2 | Self::Npy)
+        matches!(self, Self::Vtu | Self::Msh | Self::Msh2 | Self::Npy | Self::SimVascular)
     }
 
     /// True if a mesh is a folder.

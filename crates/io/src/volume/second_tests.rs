@@ -68,7 +68,7 @@ fn other_formats_refuse_midpoints() {
     };
     for name in ["tube.mesh", "tube.pvtu", "tube.ele", "tube.foam"] {
         let error = write(name, &volume).unwrap_err();
-        assert!(error.contains(".vtu, .msh, .msh2 and .npyd"), "{error}");
+        assert!(error.contains(".vtu, .msh, .msh2, .npyd and .svmesh"), "{error}");
     }
     volume.mesh.points.push(anastomesh_mesh::Point3::origin());
     assert!(write("tube.vtu", &volume).unwrap_err().contains("another number of points"));

@@ -115,7 +115,7 @@ pub fn write_mesh_with(
             openfoam::write(path, mesh, notes, options.parts, options.remark.unwrap_or(&|_| ()), progress)
         }
         MeshFormat::Npy => npy::write(path, mesh, notes, options, progress),
-        MeshFormat::SimVascular => simvascular::write(path, mesh, notes, progress),
+        MeshFormat::SimVascular => simvascular::write(path, mesh, options.second_order, notes, progress),
         MeshFormat::Vtu => write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, options)),
         MeshFormat::Msh => write_whole(path, |out| {
             let out = &mut Asked { out, progress };
@@ -145,7 +145,8 @@ pub fn write_mesh_with(
 
 /// Error of a second-order mesh in another format.
 fn no_second_order() -> io::Error {
-    let text = "second-order meshes are written to .vtu, .msh, .msh2 and .npyd, neither with prisms nor in parts";
+    let text =
+        "second-order meshes are written to .vtu, .msh, .msh2, .npyd and .svmesh, neither with prisms nor in parts";
     io::Error::new(io::ErrorKind::Unsupported, text)
 }
 

@@ -32,9 +32,11 @@ pub use result::{
 };
 
 use super::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use super::progress::{Progress, ask};
 use super::quality::TetQuality;
 use super::{NamedRegion, TetMesh, VolumeMesh};
 use regions::RegionCheck;
+use std::io;
 use surface::Boundary;
 
 /// Checks a labelled mesh.
@@ -59,7 +61,7 @@ use surface::Boundary;
 /// assert!(report.failed().any(|failed| failed.line == Line::PositiveTets));
 /// ```
 pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions: &[] }.run(None)
+    check_regions(volume, &[], expectation)
 }
 
 /// Checks a labelled mesh with regions, which are the blocks of its tetrahedra. Without regions, as [`check_volume`].
@@ -77,7 +79,20 @@ pub fn check_volume(volume: &VolumeMesh, expectation: Option<&Expectation>) -> C
 /// assert!(report.failed().any(|failed| failed.line == Line::InterfacesLabelled));
 /// ```
 pub fn check_regions(volume: &VolumeMesh, regions: &[NamedRegion], expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions }.run(None)
+    unwatched(check_regions_watched(volume, regions, expectation, &()))
+}
+
+/// As [`check_regions`], with cancellation.
+///
+/// # Errors
+/// Cancellation.
+pub fn check_regions_watched(
+    volume: &VolumeMesh,
+    regions: &[NamedRegion],
+    expectation: Option<&Expectation>,
+    progress: &dyn Progress,
+) -> io::Result<CheckReport> {
+    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions, progress }.run(None)
 }
 
 /// As [`check_volume`], for callers that already have the result of [`tet_adjacency`] for this mesh.
@@ -86,7 +101,10 @@ pub fn check_volume_with(
     adjacency: TetAdjacency,
     expectation: Option<&Expectation>,
 ) -> CheckReport {
-    Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions: &[] }.run(Some(adjacency))
+    unwatched(
+        Check { mesh: &volume.mesh, volume: Some(volume), expectation, regions: &[], progress: &() }
+            .run(Some(adjacency)),
+    )
 }
 
 /// Checks a mesh without labels; conditions on labels are not checked.
@@ -102,7 +120,11 @@ pub fn check_volume_with(
 /// assert_eq!((inverted.outcome, inverted.count), (Outcome::Fail, 1));
 /// ```
 pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckReport {
-    Check { mesh, volume: None, expectation, regions: &[] }.run(None)
+    unwatched(Check { mesh, volume: None, expectation, regions: &[], progress: &() }.run(None))
+}
+
+fn unwatched(report: io::Result<CheckReport>) -> CheckReport {
+    report.expect("only cancellation fails, and nobody cancels")
 }
 
 struct Check<'a> {
@@ -111,10 +133,11 @@ struct Check<'a> {
     expectation: Option<&'a Expectation>,
     /// Empty for a mesh without regions.
     regions: &'a [NamedRegion],
+    progress: &'a dyn Progress,
 }
 
 impl Check<'_> {
-    fn run(&self, adjacency: Option<TetAdjacency>) -> CheckReport {
+    fn run(&self, adjacency: Option<TetAdjacency>) -> io::Result<CheckReport> {
         let mesh = self.mesh;
         let counts = Counts { points: mesh.points.len(), tets: mesh.tets.len(), ..Counts::default() };
         let mut lines = vec![cells::not_empty(mesh), cells::finite_points(mesh), cells::indices_in_range(mesh)];
@@ -125,7 +148,7 @@ impl Check<'_> {
             let missing = all.filter(|l| lines.iter().all(|result| result.line != *l));
             let rest: Vec<LineResult> = missing.map(|l| LineResult::skipped(l, Skipped::Because(line))).collect();
             lines.extend(rest);
-            return CheckReport::new(counts, lines, None, Vec::new());
+            return Ok(CheckReport::new(counts, lines, None, Vec::new()));
         }
         let adjacency = adjacency.unwrap_or_else(|| tet_adjacency(&mesh.tets, mesh.points.len()));
         self.run_on_sound_arrays(counts, lines, adjacency)
@@ -136,9 +159,11 @@ impl Check<'_> {
         mut counts: Counts,
         mut lines: Vec<LineResult>,
         adjacency: TetAdjacency,
-    ) -> CheckReport {
+    ) -> io::Result<CheckReport> {
         let mesh = self.mesh;
+        ask(self.progress)?;
         lines.extend(cells::lines(mesh, &adjacency));
+        ask(self.progress)?;
         lines.push(cells::no_duplicate_points(mesh));
         counts.components = cells::component_count(&adjacency);
         counts.volume = cells::volume(mesh);
@@ -155,7 +180,8 @@ impl Check<'_> {
         counts.boundary_components = boundary.surfaces().all.len();
         let manifold = boundary.manifold_lines();
         let open = manifold.iter().find(|line| line.fails()).map(|line| line.line);
-        let (line, intersections) = boundary.self_intersections(!manifold[0].fails());
+        let (line, intersections) = boundary.self_intersections(!manifold[0].fails(), self.progress);
+        ask(self.progress)?;
         let is_complex = regions.is_some() && self.expectation.is_none();
         lines.extend(manifold.map(|line| if is_complex { line.may_touch() } else { line }));
         lines.push(line);
@@ -168,11 +194,14 @@ impl Check<'_> {
             Some(regions) => lines.extend(regions.labels(&faces, self.expectation)),
             None => lines.extend(self.labels(&faces)),
         }
-        lines.extend(regions.iter_mut().flat_map(|regions| regions.lines(self.expectation.is_some())));
+        if let Some(regions) = &mut regions {
+            lines.extend(regions.lines(self.expectation.is_some(), self.progress));
+            ask(self.progress)?;
+        }
         counts.caps = self.volume.map_or(0, |v| v.patches.iter().filter(|p| p.cap.is_some()).count());
         let sizes = regions.map_or_else(Vec::new, |regions| regions.counts());
         let report = CheckReport::new(counts, lines, Some(TetQuality::of(mesh)), intersections);
-        CheckReport { regions: sizes, ..report }
+        Ok(CheckReport { regions: sizes, ..report })
     }
 
     /// Checks the genus of closed manifolds; `open` is the condition that makes the boundary no closed manifold.

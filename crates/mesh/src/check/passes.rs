@@ -295,7 +295,8 @@ impl<'a> Passes<'a> {
         let mut lines: Vec<LineResult> = boundary.manifold_lines().into();
         let is_closed = !lines[0].fails();
         let surfaces = boundary.surfaces().all.len();
-        lines.push(boundary.self_intersections(is_closed).0);
+        lines.push(boundary.self_intersections(is_closed, self.progress).0);
+        ask(self.progress)?;
         for offender in lines.iter_mut().flat_map(|line| &mut line.offenders) {
             offender.ids.iter_mut().for_each(|id| *id = i64::from(used[*id as usize]));
         }

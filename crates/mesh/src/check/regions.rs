@@ -8,6 +8,7 @@ use super::result::{self, Expectation, Line, LineResult, Offender, OffenderKind,
 use super::surface::Boundary;
 use crate::adjacency::{NONE, TetAdjacency};
 use crate::geometry::DisjointSets;
+use crate::progress::Progress;
 use crate::quality::volume6;
 use crate::region::{RegionFace, faces_with};
 use crate::{NamedRegion, Patch, TetMesh, VolumeMesh, WALL, face_key, same_turn};
@@ -147,8 +148,8 @@ impl<'a> RegionCheck<'a> {
 
     /// Conditions on the regions. In a mesh without expectation, regions may touch themselves, and no interface need be
     /// labelled.
-    pub(super) fn lines(&mut self, is_expected: bool) -> [LineResult; 5] {
-        let [boundaries, intersections] = self.boundaries(is_expected);
+    pub(super) fn lines(&mut self, is_expected: bool, progress: &dyn Progress) -> [LineResult; 5] {
+        let [boundaries, intersections] = self.boundaries(is_expected, progress);
         let [sides, labelled] = self.interfaces(is_expected);
         [self.named(), boundaries, intersections, sides, labelled]
     }
@@ -174,7 +175,7 @@ impl<'a> RegionCheck<'a> {
     }
 
     /// Checks the boundary of each region as that of a mesh, and counts the places where it touches itself.
-    fn boundaries(&mut self, is_expected: bool) -> [LineResult; 2] {
+    fn boundaries(&mut self, is_expected: bool, progress: &dyn Progress) -> [LineResult; 2] {
         let mut manifold = Tally::new(Line::RegionBoundaries);
         let mut intersections = Tally::new(Line::RegionIntersections);
         for id in self.ids() {
@@ -182,7 +183,7 @@ impl<'a> RegionCheck<'a> {
             let boundary = Boundary::new(&self.volume.mesh.points, &faces);
             let lines = boundary.manifold_lines();
             let is_closed = !lines[0].fails();
-            intersections.add_all(boundary.self_intersections(is_closed).0);
+            intersections.add_all(boundary.self_intersections(is_closed, progress).0);
             self.touches.insert(id, lines.iter().map(|line| line.count).sum());
             for line in lines {
                 manifold.add_all(line);

@@ -1,8 +1,9 @@
 //! Each condition on regions is broken once, and found.
 
-use super::super::{Line, Outcome, Skipped, check_regions};
+use super::super::{Line, Outcome, Skipped, check_regions, check_regions_watched};
 use super::*;
 use crate::geometry::{Point3, Vec3};
+use crate::progress::{Cancelled, StopsAfter};
 use crate::region::region_faces;
 use crate::shapes::walled_channel;
 use crate::{Cap, Patch};
@@ -205,4 +206,19 @@ fn every_tetrahedron_has_a_named_region() {
     volume.boundary_block.iter_mut().filter(|block| **block == 3).for_each(|block| *block = 9);
     let failed = failures(&volume, &regions, Some(&expectation));
     assert!(failed.contains(&Line::RegionsNamed), "{failed:?}");
+}
+
+#[test]
+fn the_check_stops_when_asked() {
+    let (volume, regions, expectation) = channel();
+    let mut times = 0;
+    let report = loop {
+        match check_regions_watched(&volume, &regions, Some(&expectation), &StopsAfter::new(times)) {
+            Ok(report) => break report,
+            Err(error) => assert!(Cancelled::is_in(&error), "{error}"),
+        }
+        times += 1;
+    };
+    assert!(times > 4, "{times}");
+    assert_eq!(report, check_regions(&volume, &regions, Some(&expectation)));
 }

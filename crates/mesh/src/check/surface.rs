@@ -7,6 +7,7 @@ use super::surfaces::{Surface, Surfaces, surfaces};
 use crate::adjacency::{NONE, TriAdjacency, tri_adjacency};
 use crate::geometry::DisjointSets;
 use crate::geometry::{Fans, Point3, contacts_with};
+use crate::progress::Progress;
 
 /// Boundary faces with the fans of their vertices.
 pub(super) struct Boundary<'a> {
@@ -120,10 +121,11 @@ impl<'a> Boundary<'a> {
         })
     }
 
-    /// Finds faces that intersect improperly. If the boundary is closed and no faces intersect, finds nested surfaces.
-    pub(super) fn self_intersections(&self, closed: bool) -> (LineResult, Vec<Intersection>) {
+    /// Finds faces that intersect improperly. If the boundary is closed and no faces intersect, finds nested surfaces. After
+    /// cancellation, some are missing.
+    pub(super) fn self_intersections(&self, closed: bool, progress: &dyn Progress) -> (LineResult, Vec<Intersection>) {
         let mut tally = Tally::new(Line::NoSelfIntersection);
-        let contacts = contacts_with(self.points, self.faces, &self.fans, &|| false);
+        let contacts = contacts_with(self.points, self.faces, &self.fans, &|| progress.is_cancelled());
         let mut intersections = Vec::with_capacity(contacts.len());
         for (i, j, kind) in contacts {
             let faces = [self.faces[i as usize], self.faces[j as usize]];
@@ -135,7 +137,7 @@ impl<'a> Boundary<'a> {
                 tally.add(|| Offender::new(OffenderKind::FacePair, faces.as_flattened(), place));
             }
         }
-        if closed && intersections.is_empty() {
+        if closed && intersections.is_empty() && !progress.is_cancelled() {
             for surface in nested_surfaces(self.points, self.faces, &self.surfaces) {
                 let vertex = self.surfaces.all[surface as usize].vertex;
                 tally.add(|| point_offender(self.points, vertex));

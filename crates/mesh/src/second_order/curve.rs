@@ -7,8 +7,10 @@ use super::midpoints::SecondOrder;
 use super::surface::{self, Flat};
 use crate::VolumeMesh;
 use crate::geometry::{Point3, Vec3};
+use crate::progress::{Progress, ask};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use std::io;
 
 /// Least Jacobian determinant of a curved element, relative to that of the straight one with the same corners. Elements below it are
 /// pulled back. A positive determinant suffices for solvers; the margin keeps their matrices regular.
@@ -41,13 +43,30 @@ impl SecondOrder {
     /// parts stay flat. Edges near a curved face follow it. Where an element would be distorted, the midpoints of its edges are
     /// pulled back. The result does not depend on the number of threads.
     ///
-    /// All tetrahedra must be positive. Each face must be a face of a tetrahedron.
+    /// All tetrahedra must be positive.
+    ///
+    /// # Panics
+    /// If a face is no face of a tetrahedron.
     pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {
+        Self::curved_watched(volume, &()).expect("only cancellation fails, and nobody cancels")
+    }
+
+    /// As [`curved`](Self::curved), with cancellation.
+    ///
+    /// # Errors
+    /// Cancellation.
+    ///
+    /// # Panics
+    /// See [`curved`](Self::curved).
+    pub fn curved_watched(volume: &VolumeMesh, progress: &dyn Progress) -> io::Result<(Self, Curving)> {
         let edges = Edges::of_cells(&volume.mesh.tets, &volume.boundary, volume.mesh.points.len());
+        ask(progress)?;
         let offsets = surface::offsets(volume, &edges);
+        ask(progress)?;
         let second = Self::straight_with(&volume.mesh.points, edges);
         let offsets = inner_offsets(volume, &second, &offsets);
-        curve(volume, second, offsets)
+        ask(progress)?;
+        curve(volume, second, offsets, progress)
     }
 }
 
@@ -72,7 +91,12 @@ fn inner_offsets(volume: &VolumeMesh, second: &SecondOrder, offsets: &[Vec3]) ->
 }
 
 /// Places the midpoints of edges at the given offsets from the middles, as far as the elements permit.
-fn curve(volume: &VolumeMesh, second: SecondOrder, offsets: Vec<Vec3>) -> (SecondOrder, Curving) {
+fn curve(
+    volume: &VolumeMesh,
+    second: SecondOrder,
+    offsets: Vec<Vec3>,
+    progress: &dyn Progress,
+) -> io::Result<(SecondOrder, Curving)> {
     let mut state = State {
         volume,
         touched: offsets.iter().map(|offset| *offset != Vec3::zeros()).collect(),
@@ -83,14 +107,15 @@ fn curve(volume: &VolumeMesh, second: SecondOrder, offsets: Vec<Vec3>) -> (Secon
     };
     state.place();
     for _ in 0..ROUNDS {
-        let bad = state.distorted();
+        let bad = state.distorted(progress);
+        ask(progress)?;
         if bad.is_empty() {
-            return state.finish();
+            return Ok(state.finish());
         }
         state.pull(&bad);
     }
     state.straighten();
-    state.finish()
+    Ok(state.finish())
 }
 
 /// Midpoints between two rounds.
@@ -119,12 +144,12 @@ impl State<'_> {
         });
     }
 
-    /// Curved edges of distorted elements, ascending. Examines the elements with a touched edge.
-    fn distorted(&mut self) -> Vec<u32> {
+    /// Curved edges of distorted elements, ascending. Examines the elements with a touched edge, none after cancellation.
+    fn distorted(&mut self, progress: &dyn Progress) -> Vec<u32> {
         let Self { volume, second, offsets, touched, least, .. } = self;
         let examine = |(&tet, least): (&[u32; 4], &mut f64)| -> Vec<u32> {
             let edges = second.edges_of(tet);
-            if !edges.iter().any(|&edge| touched[edge as usize]) {
+            if !edges.iter().any(|&edge| touched[edge as usize]) || progress.is_cancelled() {
                 return Vec::new();
             }
             let curved: Vec<u32> = edges.into_iter().filter(|&edge| offsets[edge as usize] != Vec3::zeros()).collect();

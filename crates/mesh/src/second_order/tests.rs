@@ -3,6 +3,7 @@
 use super::{QuadraticMesh, SecondOrder, check_jacobians, jacobian};
 use crate::adjacency::boundary_faces;
 use crate::geometry::{Point3, Vec3};
+use crate::progress::{Cancelled, StopsAfter};
 use crate::shapes::{cube_lattice, perturb, sphere_surface, tube_lattice, walled_channel};
 use crate::{Cap, Patch, TetMesh, VolumeMesh, WALL};
 use proptest::prelude::*;
@@ -288,4 +289,19 @@ proptest! {
         let checked = check_jacobians(&volume.mesh, &second);
         prop_assert!(checked.is_valid() && checked.least_scaled >= 0.099 && curving.least_scaled >= 0.1);
     }
+}
+
+#[test]
+fn curving_stops_when_asked() {
+    let volume = tube(2, 4, 0.4);
+    let mut times = 0;
+    let second = loop {
+        match SecondOrder::curved_watched(&volume, &StopsAfter::new(times)) {
+            Ok((second, _)) => break second,
+            Err(error) => assert!(Cancelled::is_in(&error), "{error}"),
+        }
+        times += 1;
+    };
+    assert!(times > 4, "{times}");
+    assert_eq!(second, SecondOrder::curved(&volume).0);
 }

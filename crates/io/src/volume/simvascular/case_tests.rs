@@ -2,9 +2,10 @@
 
 use super::write;
 use crate::flow::{CapFlow, Flow, OutletModel, Profile, Transient, Waveform};
-use crate::volume::MeshNotes;
 use crate::volume::fixtures::labelled_tube;
+use crate::volume::{MeshNotes, read_mesh};
 use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::{Cap, Patch, VolumeMesh};
 use std::collections::BTreeMap;
 use std::fs;
@@ -59,7 +60,7 @@ fn flow(outlet: OutletModel, waveform: Option<Waveform>) -> Flow {
 /// Folder of a case.
 fn written(folder: &Path, flow: Flow) -> PathBuf {
     let path = folder.join("case.svmesh");
-    write(&path, &tube(), &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap();
+    write(&path, &tube(), None, &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap();
     path
 }
 
@@ -230,4 +231,62 @@ fn womersley_velocities_carry_the_flow_rate() {
         assert!((found / expected - 1.0).abs() < 1e-9, "{k}: {found} {expected}");
     }
     assert!(path.join("inlet.flow").metadata().is_err());
+}
+
+/// Integral of a component's values over a curved face with six nodes, by small triangles.
+fn integral(nodes: &[Point3; 6], values: &[f64; 6]) -> f64 {
+    const STEPS: u32 = 40;
+    let basis = |x: f64, y: f64| {
+        let z = 1.0 - x - y;
+        let corner = |x: f64| x * (2.0 * x - 1.0);
+        [corner(x), corner(y), corner(z), 4.0 * x * y, 4.0 * y * z, 4.0 * z * x]
+    };
+    let at = |[i, j]: [u32; 2]| {
+        let basis = basis(f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
+        let point: Vec3 = nodes.iter().zip(basis).map(|(node, share)| node.coords * share).sum();
+        (point, values.iter().zip(basis).map(|(value, share)| value * share).sum::<f64>())
+    };
+    let part = |corners: [[u32; 2]; 3]| {
+        let [(a, f), (b, g), (c, h)] = corners.map(at);
+        (b - a).cross(&(c - a)).norm() / 2.0 * (f + g + h) / 3.0
+    };
+    let mut sum = 0.0;
+    for i in 0..STEPS {
+        for j in 0..STEPS - i {
+            sum += part([[i, j], [i + 1, j], [i, j + 1]]);
+            if i + j + 1 < STEPS {
+                sum += part([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
+            }
+        }
+    }
+    sum
+}
+
+#[test]
+fn second_order_elements_have_ten_nodes_and_their_velocities_the_flow_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.svmesh");
+    let volume = tube();
+    let second = SecondOrder::curved(&volume).0;
+    let mut flow = flow(OutletModel::default(), Some(pulse())).profile(Profile::Womersley);
+    flow.transient = flow.transient.map(|time| time.ramp(0.0));
+    write(&path, &volume, Some(&second), &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap();
+    let all = elements(&path);
+    assert_eq!(all["Add_equation fluid/Use_taylor_hood_type_basis"], "true");
+    assert_eq!(read_mesh(&path.join("mesh-complete.mesh.vtu")).unwrap().second_order.as_ref(), Some(&second));
+
+    let rows = table(&path.join(&condition(&all, "inlet")["Temporal_and_spatial_values_file_path"]));
+    let times = rows[0][1] as usize;
+    let speeds: BTreeMap<u32, f64> =
+        rows[1 + times..].chunks(1 + times).map(|block| (block[0][0] as u32 - 1, block[1][2])).collect();
+    let points = [&volume.mesh.points[..], second.middles()].concat();
+    let faces = volume.boundary.iter().zip(&volume.boundary_patch).filter(|(_, patch)| **patch == 2);
+    let faces: Vec<[u32; 6]> = faces.map(|(face, _)| second.face_nodes(*face)).collect();
+    assert!(speeds.keys().all(|node| faces.iter().any(|face| face.contains(node))));
+    let flux = |face: &[u32; 6]| integral(&face.map(|v| points[v as usize]), &face.map(|v| speeds[&v]));
+    let (found, expected) = (faces.iter().map(flux).sum::<f64>(), -ends(&volume)[0].1 * pulse().at(rows[1][0]));
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    // Nodes of the rim do not move.
+    let still = speeds.values().filter(|speed| **speed == 0.0).count();
+    assert!(still > 0 && still % 2 == 0, "{still}");
 }

@@ -1,7 +1,7 @@
 //! Files of a folder `mesh-complete`: tetrahedra, exterior, walls and surfaces.
 
 use super::layout::{EXTERIOR, MESH, WALLS};
-use super::sheet::{Chosen, Sheet, WideSheet, used};
+use super::sheet::{Chosen, Sheet, WideSheet, corners, used};
 use super::spool::Spool;
 use crate::file::{Asked, AtomicFile, AtomicFolder};
 use crate::volume::second::CellNodes;
@@ -45,7 +45,9 @@ pub(super) struct MeshComplete<'a> {
     pub(super) folder: &'a AtomicFolder,
     /// Beginning of the names of its files.
     pub(super) prefix: &'a str,
+    /// Mesh, with midpoints after its points.
     pub(super) mesh: &'a dyn MeshSource,
+    pub(super) nodes: CellNodes<'a>,
     pub(super) spool: &'a Spool,
     pub(super) numbers: Numbers<'a>,
     pub(super) progress: &'a dyn Progress,
@@ -53,7 +55,7 @@ pub(super) struct MeshComplete<'a> {
 
 impl MeshComplete<'_> {
     pub(super) fn write(&self, is_wall: Chosen) -> io::Result<()> {
-        self.put(MESH, &|out| write_tets(out, self.mesh, &self.numbers))?;
+        self.put(MESH, &|out| write_tets(out, self.mesh, self.nodes, &self.numbers))?;
         self.put_wide(EXTERIOR, &|_| true)?;
         self.put_wide(WALLS, is_wall)
     }
@@ -67,8 +69,9 @@ impl MeshComplete<'_> {
 
     /// Writes a file with the selected faces.
     fn put_wide(&self, name: &str, has: Chosen) -> io::Result<()> {
-        let (used, faces) = used(self.mesh, self.spool, has)?;
-        let sheet = WideSheet { mesh: self.mesh, spool: self.spool, has, used: &used, ranks: used.ranks(), faces };
+        let Self { mesh, nodes, spool, .. } = *self;
+        let (used, faces) = used(mesh.counts().points, nodes, spool, has)?;
+        let sheet = WideSheet { mesh, nodes, spool, has, used: &used, ranks: used.ranks(), faces };
         self.put(name, &|out| write_sheet(out, &sheet, &self.numbers))
     }
 }
@@ -88,9 +91,9 @@ pub(super) fn caps(spool: &Spool, has: impl Fn(i32) -> bool) -> io::Result<BTree
 }
 
 /// Checks that all counts fit into 32 bits, as the readers require.
-pub(super) fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
+pub(super) fn ensure_countable(mesh: &dyn MeshSource, nodes: CellNodes) -> io::Result<()> {
     let counts = mesh.counts();
-    if Width::of(counts, CellNodes::default()) == Width::Int32 {
+    if Width::of(counts, nodes) == Width::Int32 {
         return Ok(());
     }
     let text = format!(
@@ -101,12 +104,17 @@ pub(super) fn ensure_countable(mesh: &dyn MeshSource) -> io::Result<()> {
 }
 
 /// Writes tetrahedra only, as the solver accepts no other cells.
-fn write_tets(out: &mut (impl Write + Seek), mesh: &dyn MeshSource, numbers: &Numbers) -> io::Result<()> {
+fn write_tets(
+    out: &mut (impl Write + Seek),
+    mesh: &dyn MeshSource,
+    nodes: CellNodes,
+    numbers: &Numbers,
+) -> io::Result<()> {
     let mesh: &dyn MeshSource = &Recounted::without_boundary(mesh);
     let counts = mesh.counts();
     let (points, tets) = (counts.points, counts.tets);
     let mut arrays = vec![points_array(points, false, |each| mesh.each_points(each))];
-    arrays.extend(cell_arrays(mesh, CellNodes::default(), Width::Int32));
+    arrays.extend(cell_arrays(mesh, nodes, Width::Int32));
     let (node, element, region) = (|v| numbers.node(v), |tet| numbers.element(tet), |_| numbers.region.cast_unsigned());
     arrays.push(uncompressed(ints(ArrayLocation::PointData, NODE_ID, points, &node)));
     arrays.push(uncompressed(ints(ArrayLocation::CellData, ELEMENT_ID, tets, &element)));
@@ -140,20 +148,25 @@ fn labels<'a>(sheet: &'a dyn Sheet, name: &'static str, of: &'a (dyn Fn(&OuterFa
 /// Writes a surface with the mesh numbers of its points and adjacent tetrahedra.
 pub(super) fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet, numbers: &Numbers) -> io::Result<()> {
     let (points, faces) = sheet.counts();
-    let corners = ArrayWriter::new(ArrayLocation::Polys, "connectivity", INT32, 3 * faces, |out| {
-        sheet.each_faces(&mut |some| out.push(some.len(), |i| corners_of(sheet, &some[i])))
+    let (nodes, per_face) = (sheet.nodes(), sheet.nodes().per_face());
+    let connectivity = ArrayWriter::new(ArrayLocation::Polys, "connectivity", INT32, per_face * faces, |out| {
+        sheet.each_faces(&mut |some| {
+            let corners = corners(some);
+            let all = nodes.of_faces(&corners);
+            out.push(all.len(), |i| sheet.own_number(all[i]).to_le_bytes())
+        })
     });
-    let offsets = move |out: &mut Blocks| out.push(faces, |face| (3 * (face as u32 + 1)).to_le_bytes());
-    let nodes = ArrayWriter::new(ArrayLocation::PointData, NODE_ID, INT32, points, |out| {
+    let offsets = move |out: &mut Blocks| out.push(faces, |face| ((per_face * (face + 1)) as u32).to_le_bytes());
+    let ids = ArrayWriter::new(ArrayLocation::PointData, NODE_ID, INT32, points, |out| {
         sheet.each_ids(&mut |ids| out.push(ids.len(), |i| numbers.node(ids[i]).to_le_bytes()))
     });
     let element = |face: &OuterFace| numbers.element(face.tet);
     let region = |_: &OuterFace| numbers.region.cast_unsigned();
     let patch = |face: &OuterFace| face.patch.cast_unsigned();
     let arrays = vec![
-        uncompressed(nodes),
+        uncompressed(ids),
         points_array(points, false, |mut each| sheet.each_points(&mut each)),
-        uncompressed(corners),
+        uncompressed(connectivity),
         uncompressed(ArrayWriter::new(ArrayLocation::Polys, "offsets", INT32, faces, offsets)),
         uncompressed(labels(sheet, ELEMENT_ID, &element)),
         labels(sheet, "ModelRegionID", &region),
@@ -161,13 +174,4 @@ pub(super) fn write_sheet(out: &mut (impl Write + Seek), sheet: &dyn Sheet, numb
     ];
     let counts = format!("NumberOfPoints=\"{points}\" NumberOfPolys=\"{faces}\"");
     File { kind: "PolyData", counts, arrays, raw: false }.write(out)
-}
-
-fn corners_of(sheet: &dyn Sheet, face: &OuterFace) -> [u8; 12] {
-    let mut bytes = [0; 12];
-    let (words, _) = bytes.as_chunks_mut::<4>();
-    for (word, v) in words.iter_mut().zip(face.vertices) {
-        *word = sheet.own_number(v).to_le_bytes();
-    }
-    bytes
 }

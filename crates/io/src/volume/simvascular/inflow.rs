@@ -6,6 +6,7 @@ use super::steps::Steps;
 use crate::flow::{CapFlow, Flow, Harmonic, Profile, Waveform, plain, poiseuille, womersley};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::nalgebra::Complex;
+use anastomesh_mesh::quality::triangle_area_vector;
 use anastomesh_mesh::{Cap, Patch};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -119,10 +120,10 @@ fn parts(waveform: &Waveform, harmonics: &[Harmonic], time: f64) -> Vec<Complex<
     std::iter::once(Complex::from(rest)).chain(harmonics).collect()
 }
 
-/// Profiles of these parts at the points of a cap: 0 on its rim, with a flux of exactly 1 through its triangles.
+/// Profiles of these parts at the points of a cap: 0 on its rim, with a flux of exactly 1 through its faces.
 fn shapes(harmonics: &[Harmonic], cap: &CapSheet, disc: &Cap, kinematic_viscosity: f64) -> Vec<Vec<Complex<f64>>> {
-    let triangles = cap.triangles();
-    let is_rim = rim(&triangles, cap.points().len());
+    let faces = cap.faces();
+    let is_rim = rim(&faces, cap.points().len());
     let number = |harmonic: &Harmonic| disc.radius * (harmonic.frequency / kinematic_viscosity).sqrt();
     let numbers: Vec<f64> = harmonics.iter().map(number).collect();
     let at = |(point, is_rim): (&Point3, &bool)| -> Vec<Complex<f64>> {
@@ -132,10 +133,10 @@ fn shapes(harmonics: &[Harmonic], cap: &CapSheet, disc: &Cap, kinematic_viscosit
     };
     let mut shapes: Vec<Vec<Complex<f64>>> = cap.points().iter().zip(&is_rim).map(at).collect();
     let mut flux = vec![Complex::<f64>::default(); shapes.first().map_or(0, Vec::len)];
-    for corners in &triangles {
-        let third = cap.area(corners) / 3.0;
-        for &corner in corners {
-            flux.iter_mut().zip(&shapes[corner]).for_each(|(flux, shape)| *flux += shape * third);
+    for face in &faces {
+        let nodes: Vec<Point3> = face.iter().map(|&node| cap.points()[node]).collect();
+        for (&node, weight) in face.iter().zip(weights(&nodes)) {
+            flux.iter_mut().zip(&shapes[node]).for_each(|(flux, shape)| *flux += shape * weight);
         }
     }
     for shape in &mut shapes {
@@ -144,17 +145,44 @@ fn shapes(harmonics: &[Harmonic], cap: &CapSheet, disc: &Cap, kinematic_viscosit
     shapes
 }
 
-/// True for the points of edges with one triangle.
-fn rim(triangles: &[[usize; 3]], points: usize) -> Vec<bool> {
-    let mut count: BTreeMap<[usize; 2], u32> = BTreeMap::new();
-    for [a, b, c] in triangles {
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            *count.entry([*from.min(to), *from.max(to)]).or_default() += 1;
+/// Integrals of the basis functions of a flat face with three or six nodes. Edges of the latter may be curved.
+fn weights(nodes: &[Point3]) -> Vec<f64> {
+    if let [a, b, c] = nodes {
+        return vec![triangle_area_vector(a, b, c).norm() / 3.0; 3];
+    }
+    let mut weights = vec![0.0; nodes.len()];
+    for &(share, a) in &QUADRATURE {
+        let b = 1.0 - 2.0 * a;
+        for [x, y, z] in [[b, a, a], [a, b, a], [a, a, b]] {
+            let along_x = [4.0 * x - 1.0, 0.0, 1.0 - 4.0 * z, 4.0 * y, -4.0 * y, 4.0 * (z - x)];
+            let along_y = [0.0, 4.0 * y - 1.0, 1.0 - 4.0 * z, 4.0 * x, 4.0 * (z - y), -4.0 * x];
+            let tangent = |slopes: [f64; 6]| slopes.iter().zip(nodes).map(|(d, node)| node.coords * *d).sum::<Vec3>();
+            let area = tangent(along_x).cross(&tangent(along_y)).norm() / 2.0;
+            let corners = [x, y, z].map(|x| x * (2.0 * x - 1.0));
+            let values = corners.into_iter().chain([x * y, y * z, z * x].map(|product| 4.0 * product));
+            weights.iter_mut().zip(values).for_each(|(weight, value)| *weight += share * area * value);
+        }
+    }
+    weights
+}
+
+/// Weights and coordinates of a quadrature that is exact for polynomials of degree 4 on a triangle (Dunavant, 1985).
+const QUADRATURE: [(f64, f64); 2] =
+    [(0.223_381_589_678_011, 0.445_948_490_915_965), (0.109_951_743_655_322, 0.091_576_213_509_771)];
+
+/// True for the nodes of edges with one face. Nodes of a face are its corners, then midpoints in VTK's order.
+fn rim(faces: &[Vec<usize>], points: usize) -> Vec<bool> {
+    let mut edges: BTreeMap<[usize; 2], (u32, usize)> = BTreeMap::new();
+    for face in faces {
+        for i in 0..3 {
+            let (from, to) = (face[i], face[(i + 1) % 3]);
+            let middle = face.get(3 + i).copied().unwrap_or(from);
+            edges.entry([from.min(to), from.max(to)]).or_insert((0, middle)).0 += 1;
         }
     }
     let mut is_rim = vec![false; points];
-    for edge in count.into_iter().filter(|(_, faces)| *faces == 1).map(|(edge, _)| edge) {
-        for point in edge {
+    for ([a, b], (_, middle)) in edges.into_iter().filter(|(_, (faces, _))| *faces == 1) {
+        for point in [a, b, middle] {
             is_rim[point] = true;
         }
     }

@@ -1,6 +1,7 @@
 //! `SimVascular` folder `mesh-complete` for `svMultiPhysics`: tetrahedra, whole boundary, patches, flow rates of
 //! inlets, and `solver.xml`.
 //! All numbers count from 1 in 32 bits. Of a mesh with regions, each has such a folder, and `solver.xml` couples them.
+//! Second-order elements have ten nodes, faces six, and the solver gets velocities of second and pressures of first order.
 
 #[cfg(test)]
 mod case_tests;
@@ -19,11 +20,13 @@ mod steps;
 mod tests;
 
 use super::content::MeshNotes;
+use super::second::{CellNodes, WithMiddles};
 use crate::file::AtomicFolder;
 use crate::flow::plain;
 use crate::patches::usual_name;
 use anastomesh_mesh::WALL;
 use anastomesh_mesh::progress::{Progress, ask};
+use anastomesh_mesh::second_order::SecondOrder;
 use anastomesh_mesh::source::MeshSource;
 use complete::{MeshComplete, Numbers, caps, ensure_countable, write_sheet};
 use layout::{SOLVER, WALLS, is_ours, surface_path};
@@ -46,16 +49,28 @@ pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
-pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progress: &dyn Progress) -> io::Result<()> {
+pub(super) fn write(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    second: Option<&SecondOrder>,
+    notes: &MeshNotes,
+    progress: &dyn Progress,
+) -> io::Result<()> {
     let folder = AtomicFolder::create(path, is_ours)?;
+    ensure_countable(mesh, CellNodes(second))?;
     if !notes.regions.is_empty() {
+        if second.is_some() {
+            let text = "second-order meshes with regions are written to .vtu, .msh, .msh2 and .npyd";
+            return Err(io::Error::new(io::ErrorKind::Unsupported, text));
+        }
         regions::write(&folder, path, mesh, notes, progress)?;
         return folder.commit();
     }
-    ensure_countable(mesh)?;
-    let spool = Spool::of(mesh, path, progress)?;
+    let (spool, nodes) = (Spool::of(mesh, path, progress)?, CellNodes(second));
+    let with_middles = second.map(|second| WithMiddles { mesh, second });
+    let mesh: &dyn MeshSource = with_middles.as_ref().map_or(mesh, |mesh| mesh);
     let numbers = Numbers::default();
-    MeshComplete { folder: &folder, prefix: "", mesh, spool: &spool, numbers, progress }
+    MeshComplete { folder: &folder, prefix: "", mesh, nodes, spool: &spool, numbers, progress }
         .write(&|face| face.patch == WALL)?;
     let names: BTreeMap<i32, String> = mesh.patches().iter().map(|p| (p.id, plain(&p.name))).collect();
     let surface = |id: i32| surface_path(names.get(&id).map_or(&usual_name(id), |name| name));
@@ -63,7 +78,7 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     let caps = caps(&spool, |patch| patch != WALL)?;
     let mut edges = BTreeMap::new();
     for (&id, faces) in &caps {
-        let cap = CapSheet::new(mesh, faces)?;
+        let cap = CapSheet::new(mesh, nodes, faces)?;
         edges.insert(id, cap.edge());
         let mut bytes = Cursor::new(Vec::new());
         write_sheet(&mut bytes, &cap, &numbers)?;
@@ -73,12 +88,12 @@ pub(super) fn write(path: &Path, mesh: &dyn MeshSource, notes: &MeshNotes, progr
     let flow = &notes.flow_of(mesh.patches());
     let steps = Steps::of(mesh.patches(), flow, &edges);
     for patch in mesh.patches().iter().filter(|patch| patch.is_inlet()) {
-        let cap = CapSheet::new(mesh, caps.get(&patch.id).map_or(&[], Vec::as_slice))?;
+        let cap = CapSheet::new(mesh, nodes, caps.get(&patch.id).map_or(&[], Vec::as_slice))?;
         if let Some((name, text)) = inflow::file(patch, &cap, flow, &steps) {
             folder.put(&name, text.as_bytes())?;
         }
         ask(progress)?;
     }
-    folder.put(SOLVER, solver::text(mesh.patches(), flow, &steps).as_bytes())?;
+    folder.put(SOLVER, solver::text(mesh.patches(), flow, &steps, second.is_some()).as_bytes())?;
     folder.commit()
 }

@@ -1,6 +1,6 @@
 //! Folder of a mesh with regions: a `mesh-complete` folder for each, and a case of fluid–structure interaction.
 
-use super::complete::{MeshComplete, Numbers, caps, ensure_countable, write_sheet};
+use super::complete::{MeshComplete, Numbers, caps, write_sheet};
 use super::layout::{SOLVER, surface_path};
 use super::sheet::CapSheet;
 use super::spool::Spool;
@@ -10,6 +10,7 @@ use crate::file::AtomicFolder;
 use crate::flow::{Role, plain};
 use crate::patches::usual_name;
 use crate::volume::content::MeshNotes;
+use crate::volume::second::CellNodes;
 use anastomesh_mesh::Patch;
 use anastomesh_mesh::progress::{Progress, ask};
 use anastomesh_mesh::region::{NamedRegion, RegionMesh, RegionMeshes};
@@ -31,7 +32,6 @@ pub(super) fn write(
     notes: &MeshNotes,
     progress: &dyn Progress,
 ) -> io::Result<()> {
-    ensure_countable(mesh)?;
     if NamedRegion::id_of(&notes.regions, NamedRegion::LUMEN).is_none() {
         let text = "no region is named 'lumen', which the flow needs; write .vtu or .msh, or rename a region";
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
@@ -65,15 +65,15 @@ fn write_region(folder: &AtomicFolder, path: &Path, part: &RegionMesh, progress:
     let mesh = &part.volume;
     let name = format!("{}/", plain(&part.region.name));
     let numbers = Numbers { points: Some(&part.points), tets: Some(&part.tets), region: part.region.id };
-    let spool = Spool::of(mesh, path, progress)?;
-    let complete = MeshComplete { folder, prefix: &name, mesh, spool: &spool, numbers, progress };
+    let (spool, nodes) = (Spool::of(mesh, path, progress)?, CellNodes::default());
+    let complete = MeshComplete { folder, prefix: &name, mesh, nodes, spool: &spool, numbers, progress };
     let ends = ends(&mesh.patches);
     complete.write(&|face| !ends.contains(&face.patch))?;
     for (id, faces) in caps(&spool, |_| true)? {
         let named = mesh.patches.iter().find(|patch| patch.id == id);
         let surface = surface_path(&named.map_or_else(|| usual_name(id), |patch| plain(&patch.name)));
         let mut bytes = Cursor::new(Vec::new());
-        write_sheet(&mut bytes, &CapSheet::new(mesh, &faces)?, &numbers)?;
+        write_sheet(&mut bytes, &CapSheet::new(mesh, nodes, &faces)?, &numbers)?;
         folder.put(&format!("{name}{surface}"), bytes.get_ref())?;
         ask(progress)?;
     }
@@ -100,11 +100,11 @@ fn write_inflow(
     let faces = caps(&spool, |patch| ends.contains(&patch))?;
     let mut edges = BTreeMap::new();
     for (&id, faces) in &faces {
-        edges.insert(id, CapSheet::new(mesh, faces)?.edge());
+        edges.insert(id, CapSheet::new(mesh, CellNodes::default(), faces)?.edge());
     }
     let steps = Steps::of(&mesh.patches, flow, &edges);
     for patch in mesh.patches.iter().filter(|patch| patch.is_inlet()) {
-        let cap = CapSheet::new(mesh, faces.get(&patch.id).map_or(&[], Vec::as_slice))?;
+        let cap = CapSheet::new(mesh, CellNodes::default(), faces.get(&patch.id).map_or(&[], Vec::as_slice))?;
         if let Some((name, text)) = inflow::file(patch, &cap, flow, &steps) {
             folder.put(&name, text.as_bytes())?;
         }

@@ -1,6 +1,7 @@
 //! Parts of the boundary as separate surfaces: large ones, and caps.
 
 use super::spool::Spool;
+use crate::volume::second::CellNodes;
 use anastomesh_mesh::bits::{Bits, Ranks};
 use anastomesh_mesh::faces::OuterFace;
 use anastomesh_mesh::geometry::Point3;
@@ -16,6 +17,8 @@ pub(super) type Take<'a, T> = &'a mut dyn FnMut(&[T]) -> io::Result<()>;
 
 /// Part of the boundary. Its points are renumbered in the order of the mesh.
 pub(super) trait Sheet: Sync {
+    /// Nodes of the cells of the mesh.
+    fn nodes(&self) -> CellNodes<'_>;
     /// Number of points and faces.
     fn counts(&self) -> (usize, usize);
     /// Provides the points.
@@ -31,6 +34,7 @@ pub(super) trait Sheet: Sync {
 /// Possibly large part: memory holds only 1.5 bits per mesh point.
 pub(super) struct WideSheet<'a> {
     pub(super) mesh: &'a dyn MeshSource,
+    pub(super) nodes: CellNodes<'a>,
     pub(super) spool: &'a Spool,
     pub(super) has: Chosen<'a>,
     pub(super) used: &'a Bits,
@@ -39,12 +43,12 @@ pub(super) struct WideSheet<'a> {
 }
 
 /// Points of the selected faces, and number of these faces.
-pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: Chosen) -> io::Result<(Bits, usize)> {
-    let (mut used, mut count) = (Bits::new(mesh.counts().points), 0);
+pub(super) fn used(points: usize, nodes: CellNodes, spool: &Spool, has: Chosen) -> io::Result<(Bits, usize)> {
+    let (mut used, mut count) = (Bits::new(points), 0);
     spool.each(|faces| {
         for face in faces.iter().filter(|face| has(face)) {
             count += 1;
-            if !face.vertices.iter().all(|&v| used.insert(v)) {
+            if !nodes.of_faces(&[face.vertices]).iter().all(|&v| used.insert(v)) {
                 return Err(miscounted());
             }
         }
@@ -54,6 +58,10 @@ pub(super) fn used(mesh: &dyn MeshSource, spool: &Spool, has: Chosen) -> io::Res
 }
 
 impl Sheet for WideSheet<'_> {
+    fn nodes(&self) -> CellNodes<'_> {
+        self.nodes
+    }
+
     fn counts(&self) -> (usize, usize) {
         (self.used.count(), self.faces)
     }
@@ -88,17 +96,18 @@ impl Sheet for WideSheet<'_> {
 /// One or several inlets or outlets: small, and held in memory.
 pub(super) struct CapSheet<'a> {
     faces: &'a [OuterFace],
+    nodes: CellNodes<'a>,
     ids: Vec<u32>,
     points: Vec<Point3>,
 }
 
 impl<'a> CapSheet<'a> {
-    pub(super) fn new(mesh: &dyn MeshSource, faces: &'a [OuterFace]) -> io::Result<Self> {
-        let mut ids: Vec<u32> = faces.iter().flat_map(|face| face.vertices).collect();
+    pub(super) fn new(mesh: &dyn MeshSource, nodes: CellNodes<'a>, faces: &'a [OuterFace]) -> io::Result<Self> {
+        let mut ids: Vec<u32> = nodes.of_faces(&corners(faces)).into_owned();
         ids.sort_unstable();
         ids.dedup();
         let points = mesh.points_of(&ids)?;
-        Ok(Self { faces, ids, points })
+        Ok(Self { faces, nodes, ids, points })
     }
 
     /// Numbers of the points in the mesh.
@@ -110,25 +119,35 @@ impl<'a> CapSheet<'a> {
         &self.points
     }
 
-    /// Triangles, by indices of points.
-    pub(super) fn triangles(&self) -> Vec<[usize; 3]> {
-        self.faces.iter().map(|face| face.vertices.map(|v| self.own_number(v) as usize)).collect()
-    }
-
-    pub(super) fn area(&self, triangle: &[usize; 3]) -> f64 {
-        let [a, b, c] = triangle.map(|point| self.points[point]);
-        triangle_area_vector(&a, &b, &c).norm()
+    /// Nodes of each face, by indices of points.
+    pub(super) fn faces(&self) -> Vec<Vec<usize>> {
+        let corners = corners(self.faces);
+        let nodes = self.nodes.of_faces(&corners);
+        let own = |face: &[u32]| face.iter().map(|&v| self.own_number(v) as usize).collect();
+        nodes.chunks(self.nodes.per_face()).map(own).collect()
     }
 
     /// Edge length of equilateral triangles of the mean area.
     pub(super) fn edge(&self) -> f64 {
-        let triangles = self.triangles();
-        let area: f64 = triangles.iter().map(|triangle| self.area(triangle)).sum();
-        (4.0 * area / (3_f64.sqrt() * triangles.len().max(1) as f64)).sqrt()
+        let area = |face: &Vec<usize>| {
+            let [a, b, c] = [0, 1, 2].map(|i| self.points[face[i]]);
+            triangle_area_vector(&a, &b, &c).norm()
+        };
+        let area: f64 = self.faces().iter().map(area).sum();
+        (4.0 * area / (3_f64.sqrt() * self.faces.len().max(1) as f64)).sqrt()
     }
 }
 
+/// Corners of faces.
+pub(super) fn corners(faces: &[OuterFace]) -> Vec<[u32; 3]> {
+    faces.iter().map(|face| face.vertices).collect()
+}
+
 impl Sheet for CapSheet<'_> {
+    fn nodes(&self) -> CellNodes<'_> {
+        self.nodes
+    }
+
     fn counts(&self) -> (usize, usize) {
         (self.ids.len(), self.faces.len())
     }

@@ -8,8 +8,8 @@ use crate::flow::{CapFlow, Flow, OutletModel, Profile, Role, plain};
 use anastomesh_mesh::Patch;
 use std::fmt::Write;
 
-/// Contents of the file.
-pub(super) fn text(patches: &[Patch], flow: &Flow, steps: &Steps) -> String {
+/// Contents of the file. Second-order elements get pressures of first order (Taylor–Hood).
+pub(super) fn text(patches: &[Patch], flow: &Flow, steps: &Steps, is_second_order: bool) -> String {
     let mut faces = String::new();
     let mut conditions = String::new();
     for patch in patches {
@@ -21,11 +21,12 @@ pub(super) fn text(patches: &[Patch], flow: &Flow, steps: &Steps) -> String {
         );
         let _ = writeln!(conditions, "  <Add_BC name=\"{name}\">\n{}  </Add_BC>", condition(patch, flow));
     }
+    let (spaces, solver) = if is_second_order { (TAYLOR_HOOD, WHOLE) } else { ("", SPLIT) };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svMultiPhysicsFile version=\"0.1\">\n\n{}\
          <Add_mesh name=\"msh\">\n  <Mesh_file_path> {MESH} </Mesh_file_path>\n{faces}</Add_mesh>\n\n\
-         <Add_equation type=\"fluid\">\n{EQUATION}  <Density> {:e} </Density>\n  <Viscosity model=\"Constant\">\n    \
-         <Value> {:e} </Value>\n  </Viscosity>\n\n{OUTPUT}\n{}{conditions}</Add_equation>\n\n</svMultiPhysicsFile>\n",
+         <Add_equation type=\"fluid\">\n{EQUATION}{spaces}  <Density> {:e} </Density>\n  <Viscosity model=\"Constant\">\n    \
+         <Value> {:e} </Value>\n  </Viscosity>\n\n{OUTPUT}{solver}\n{}{conditions}</Add_equation>\n\n</svMultiPhysicsFile>\n",
         general(steps),
         flow.density,
         flow.viscosity,
@@ -142,7 +143,13 @@ const OUTPUT: &str = "  <Output type=\"Spatial\">
     <Pressure> true </Pressure>
   </Output>
 
-  <LS type=\"NS\">
+";
+
+const TAYLOR_HOOD: &str = "  <Use_taylor_hood_type_basis> true </Use_taylor_hood_type_basis>
+";
+
+/// Linear solver that takes momentum and mass apart, for elements of equal order.
+const SPLIT: &str = "  <LS type=\"NS\">
     <Linear_algebra type=\"fsils\">
       <Preconditioner> fsils </Preconditioner>
     </Linear_algebra>
@@ -153,6 +160,18 @@ const OUTPUT: &str = "  <Output type=\"Spatial\">
     <NS_GM_tolerance> 1e-3 </NS_GM_tolerance>
     <NS_CG_tolerance> 1e-3 </NS_CG_tolerance>
     <Absolute_tolerance> 1e-17 </Absolute_tolerance>
+    <Krylov_space_dimension> 250 </Krylov_space_dimension>
+  </LS>
+";
+
+/// Linear solver for pressures of a lower order than velocities.
+const WHOLE: &str = "  <LS type=\"GMRES\">
+    <Linear_algebra type=\"fsils\">
+      <Preconditioner> fsils </Preconditioner>
+    </Linear_algebra>
+    <Max_iterations> 100 </Max_iterations>
+    <Tolerance> 1e-4 </Tolerance>
+    <Absolute_tolerance> 1e-12 </Absolute_tolerance>
     <Krylov_space_dimension> 250 </Krylov_space_dimension>
   </LS>
 ";

@@ -61,10 +61,12 @@ fn a_cap_has_the_points_of_its_faces_by_their_numbers_in_the_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let spool = Spool::of(&volume, &folder.path().join("x"), &()).unwrap();
     let faces = &caps(&spool, |patch| patch != WALL).unwrap()[&3];
-    let cap = CapSheet::new(&volume, faces).unwrap();
-    let (used, count) = used(&volume, &spool, &|face: &OuterFace| face.patch == 3).unwrap();
+    let cap = CapSheet::new(&volume, CellNodes::default(), faces).unwrap();
+    let (used, count) =
+        used(volume.mesh.points.len(), CellNodes::default(), &spool, &|face: &OuterFace| face.patch == 3).unwrap();
     let wide = WideSheet {
         mesh: &volume,
+        nodes: CellNodes::default(),
         spool: &spool,
         has: &|f: &OuterFace| f.patch == 3,
         used: &used,

@@ -148,7 +148,7 @@ impl Certificate {
         let points = &part.mesh.points[..];
         let (owners, labels) = owners(part, faces);
         let boundary = Boundary::new(points, faces);
-        let (contacts, intersections) = boundary.self_intersections(false);
+        let (contacts, intersections) = boundary.self_intersections(false, &());
         self.take(iter::once(labels).chain(boundary.manifold_lines()).chain([contacts]));
         self.intersections = intersections;
         self.intersections.truncate(KEPT_INTERSECTIONS);
