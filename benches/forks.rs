@@ -7,7 +7,9 @@ use anastomesh::io::{NetworkOptions, read_network};
 use anastomesh::network::clean;
 use anastomesh::testing::{
     BlockParams, Cluster, ClusterId, ClusterMesh, EndKind, EndStyle, PartitionParams, mesh_cluster, partition,
+    shared_cells, template_of,
 };
+use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
@@ -28,7 +30,11 @@ fn measure(path: &Path) {
     let file = read_network(path, &NetworkOptions::default()).expect("a network");
     let (network, _) = clean(&file.skeleton).expect("a sound network");
     let params = PartitionParams { cut_terminals: true, ..PartitionParams::default() };
-    let clusters = partition(&network, &params).expect("a partition").clusters;
+    let mut clusters = partition(&network, &params).expect("a partition").clusters;
+    let cells = shared_cells(clusters.clone().into_par_iter());
+    clusters.iter_mut().zip(cells).for_each(|(cluster, cells)| cluster.cells = cells);
+    // Canonical forks are kept for a while, so forks of one follow each other.
+    clusters.sort_by_key(template_of);
     let is_fork = |cluster: &&Cluster| {
         cluster.ends.len() == 3 && cluster.ends.iter().all(|end| matches!(end.kind, EndKind::Cut { .. }))
     };

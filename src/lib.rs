@@ -98,7 +98,7 @@ pub mod check {
 /// For the tests, benchmarks and fuzz targets of this crate; not part of what it promises.
 #[doc(hidden)]
 pub mod testing {
-    pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster};
+    pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster, shared_cells, template_of};
     pub use crate::partition::{
         Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
     };
@@ -115,7 +115,7 @@ pub mod testing {
         FinishedJoint, FlattenFailure, NotOnBoundary, StoredEnd,
     };
     pub use crate::partition::{
-        BranchPiece, Cut, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
+        BranchPiece, Cut, ForkCells, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
     };
     #[cfg(feature = "cli")]
     pub use crate::report::info::{Quartiles, UnitGuess};

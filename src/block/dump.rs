@@ -113,6 +113,7 @@ impl BlockDump {
             ends: cluster.ends.iter().map(end).collect(),
             fine: cluster.fine.clone(),
             size: None,
+            cells: cluster.cells,
         };
         Self::new(params, nodes, BlockInput::Cluster { id, cluster })
     }

@@ -44,7 +44,7 @@ pub use end_surface::{EndFault, EndSurface, StoredEnd};
 pub use error::{BlockError, ConnectorAttempt, ConnectorFailure, FlattenFailure, NotOnBoundary};
 pub use faithful::Astray;
 pub use finished::{About, Cured, Finished, FinishedCap};
-pub use fork::template_of;
+pub use fork::{shared_cells, template_of};
 pub use free_ends::shared_ends;
 pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::fine::of_branch;
 use super::params::Overruns;
 use super::parts::{
-    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, Partition, PartitionWarning, UncutReason,
+    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, ForkCells, Partition, PartitionWarning,
+    UncutReason,
 };
 use super::path::path;
 use super::settle::{BranchSpan, Settler};
@@ -33,6 +34,9 @@ pub struct Layout {
     /// Requested edge sizes.
     #[serde(skip)]
     sizes: Option<SizeAt>,
+    /// Cells of the forks, by cluster; empty if no fork has a template.
+    #[serde(skip)]
+    cells: Vec<ForkCells>,
     chains: Chains,
     overrun: Overruns,
     /// Branch pieces of the clusters, cluster by cluster.
@@ -93,6 +97,7 @@ impl Layout {
         let mut layout = Self {
             skeleton,
             sizes: None,
+            cells: Vec::new(),
             // The settler still borrows the chains.
             chains: Chains::default(),
             overrun: settler.params.overruns(),
@@ -272,6 +277,12 @@ impl Layout {
         Self { sizes, ..self }
     }
 
+    /// Sets the cells of the forks, by cluster.
+    #[must_use]
+    pub fn with_cells(self, cells: Vec<ForkCells>) -> Self {
+        Self { cells, ..self }
+    }
+
     /// Number of clusters.
     pub fn clusters_len(&self) -> usize {
         self.r_min.len()
@@ -383,7 +394,8 @@ impl Layout {
     }
 
     fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(BranchPiece)) -> Cluster {
-        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), ..Cluster::default() };
+        let cells = self.cells.get(id.0 as usize).copied().unwrap_or_default();
+        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), cells, ..Cluster::default() };
         let mut legs: Vec<(NodeId, Leg)> = Vec::new();
         let r_min = self.r_min[id.0 as usize];
         for (index, piece) in (self.first_piece[id.0 as usize]..).zip(self.pieces_of(id.0 as usize)) {

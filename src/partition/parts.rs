@@ -117,6 +117,21 @@ pub struct Cluster {
     /// Requested edge size in the middle of a single-vessel cluster, relative to the edge length of the resolution.
     #[serde(skip)]
     pub size: Option<f64>,
+    /// Cell of the canonical fork that the cluster may be an image of.
+    #[serde(default)]
+    pub cells: ForkCells,
+}
+
+/// Cells of similar bifurcations, which have one template each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum ForkCells {
+    /// No template.
+    #[default]
+    None,
+    /// Small cells.
+    Fine,
+    /// Large cells, for forks that have few alike.
+    Coarse,
 }
 
 /// End plane of a cluster.

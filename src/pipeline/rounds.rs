@@ -23,11 +23,12 @@ use super::schedule::{Cost, costliest_first};
 use super::sizes;
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
 use super::timing::{Clock, Stopwatch};
-use crate::block::Cured;
+use crate::block::{Cured, shared_cells};
 use crate::partition::{self, ClusterId, CutId, Layout};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{BranchId, Overlaps};
 use anastomesh_tet::parts::Watch;
+use rayon::prelude::*;
 
 /// Maximum changes of the partition because of blocks that failed, and as many because of clusters that are known to fail.
 const MAX_PARTITION_CHANGES: usize = 6;
@@ -112,8 +113,13 @@ impl RunContext<'_> {
             key.finish()
         };
         let cut = || partition::lay_out(skeleton, &params, progress).map_err(RunError::from);
-        let kept =
-            || Ok(store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton)).sized(plan.size_at.clone()));
+        let kept = || {
+            let layout = store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton));
+            let layout = layout.sized(plan.size_at.clone());
+            let clusters = (0..layout.clusters_len() as u32).into_par_iter().map(|i| layout.cluster(ClusterId(i)));
+            let cells = shared_cells(clusters);
+            Ok(layout.with_cells(cells))
+        };
         self.clock.time(progress, Stage::Partition, 0, kept)
     }
 

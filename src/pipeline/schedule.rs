@@ -1,5 +1,6 @@
 //! Blocks on all threads: the costliest first, and no more at a time than memory allows.
 
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -22,12 +23,18 @@ pub struct Cost {
 /// Maximum number of blocks with one template that a thread makes in sequence.
 const IN_SEQUENCE: usize = 16;
 
-/// Blocks in the order of making, in runs that one thread makes in sequence. Costs decrease by factors of 2. Of similar cost,
-/// blocks that share a template follow each other, so that few templates are in use.
+/// Blocks in the order of making, in runs that one thread makes in sequence. Costs decrease by factors of 2. Blocks that share a
+/// template follow each other, the costliest first, so that few templates are in use.
 fn runs(costs: &[Cost]) -> (Vec<u32>, Vec<Range<usize>>) {
     let mut order: Vec<u32> = (0..costs.len() as u32).collect();
     let cost = |i: u32| &costs[i as usize];
-    let size = |i: u32| (cost(i).tets as u64).max(1).ilog2();
+    let own_size = |i: u32| (cost(i).tets as u64).max(1).ilog2();
+    let mut sizes: FxHashMap<u32, u32> = FxHashMap::default();
+    for i in order.iter().copied().filter(|&i| cost(i).template != 0) {
+        let size = sizes.entry(cost(i).template).or_default();
+        *size = own_size(i).max(*size);
+    }
+    let size = |i: u32| sizes.get(&cost(i).template).copied().unwrap_or_else(|| own_size(i));
     order.sort_unstable_by(|&a, &b| {
         let of_size = size(b).cmp(&size(a)).then(cost(a).template.cmp(&cost(b).template));
         of_size.then(cost(b).tets.total_cmp(&cost(a).tets)).then(a.cmp(&b))
@@ -137,8 +144,8 @@ mod tests {
     fn blocks_with_one_template_follow_each_other() {
         let block = |tets: f64, template| Cost { tets, template, ..Cost::default() };
         let (order, runs) = runs(&[block(5.0, 0), block(4.0, 2), block(6.0, 1), block(5.5, 2), block(90.0, 1)]);
-        assert_eq!(order, [4, 0, 2, 3, 1]);
-        assert_eq!(runs, [0..1, 1..2, 2..3, 3..5]);
+        assert_eq!(order, [4, 2, 0, 3, 1]);
+        assert_eq!(runs, [0..2, 2..3, 3..5]);
         assert_eq!(super::runs(&vec![block(1.0, 7); 40]).1, [0..16, 16..32, 32..40]);
     }
 

@@ -13,12 +13,17 @@ use anastomesh_tet::parts::{OptimizeOptions, Watch, optimize};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
+/// Factors of the lengths of a canonical fork, tried in turn. In the middle of some cells, a cut is in the wall of another vessel.
+const STRETCHES: [f64; 3] = [1.0, 1.1, 1.2];
+
 /// Filled fork in the middle of a cell.
 pub struct Canonical {
     pub fork: Fork,
     /// Points, in radii of the node.
     pub points: Vec<Point3>,
     pub tets: Vec<[u16; 4]>,
+    /// Number of leading points up to the last one on the boundary.
+    pub boundary_points: usize,
     /// Triangles of the disc of each limb, facing outwards.
     pub discs: [Vec<[u32; 3]>; 3],
     /// Triangles of the wall, facing outwards.
@@ -40,17 +45,21 @@ pub struct Level {
 impl Canonical {
     /// Makes the canonical fork of a cell; `None` if that fails.
     pub fn of(cell: &Cell, params: &BlockParams) -> Option<Self> {
+        STRETCHES.iter().find_map(|&stretch| Self::stretched(cell, stretch, params))
+    }
+
+    fn stretched(cell: &Cell, stretch: f64, params: &BlockParams) -> Option<Self> {
         let partition = PartitionParams::default();
         let overrun = partition.overrun.max(2.0 * partition.overrun_voxels / params.rho);
-        let cluster = cell.cluster(overrun);
+        let cluster = cell.cluster(overrun, stretch);
         let fork = Fork::of(&cluster).filter(|fork| (0..).zip(&fork.limbs).all(|(i, limb)| limb.end == i))?;
         let params = BlockParams { ends: EndStyle::Shared, core: params.core, ..BlockParams::with_rho(params.rho) };
         let made = contoured(ClusterId(0), &cluster, &params, &Watch::NOBODY).ok()?;
         let discs = discs(&fork, &made)?;
         let mut mesh = made.mesh;
         // Points of the boundary come first, and keep their order.
-        let fixed_points = boundary_points(&mesh)?;
-        optimize(&mut mesh, &OptimizeOptions { fixed_points, ..OptimizeOptions::full() }).ok()?;
+        let boundary_points = boundary_points(&mesh)?;
+        optimize(&mut mesh, &OptimizeOptions { fixed_points: boundary_points, ..OptimizeOptions::full() }).ok()?;
         if mesh.points.len() > usize::from(u16::MAX) {
             return None;
         }
@@ -68,7 +77,16 @@ impl Canonical {
             free.into_iter().map(&mut level).filter(|level| level.rim.is_none_or(|i| fork.limbs[i].side == TIP));
         let levels = levels.collect();
         let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
-        Some(Self { fork, points: mesh.points, tets, discs, wall, levels, topology: Arc::new(topology) })
+        Some(Self {
+            fork,
+            points: mesh.points,
+            tets,
+            boundary_points,
+            discs,
+            wall,
+            levels,
+            topology: Arc::new(topology),
+        })
     }
 }
 

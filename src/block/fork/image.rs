@@ -11,18 +11,22 @@ use crate::surface::Field;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::quality::{dihedral_range, radius_ratio};
+use anastomesh_tet::Effort;
+use anastomesh_tet::parts::{OptimizeOptions, optimize};
 use std::sync::Arc;
 
 /// Decrease of a limb's weight per length of the limb.
 const SHARPNESS: f64 = 6.0;
 /// Newton steps of a point of the wall, its largest deviation from its level after them, and its largest displacement in
 /// radii.
-const STEPS: usize = 3;
+const STEPS: usize = 6;
 const OFF_LEVEL: f64 = 2e-3;
-const FAR: f64 = 0.3;
+const FAR: f64 = 0.5;
 /// Minimum radius ratio of an image's tetrahedra, and their minimum dihedral angle in degrees.
 const LEAST: f64 = 0.3;
 const LEAST_ANGLE: f64 = 16.0;
+/// Minimum radius ratio of an image that is improved.
+const MENDABLE: f64 = 0.01;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
 
@@ -73,13 +77,24 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
         *p = at_level(&mut field, *p, level.value, plane, FAR * fork.radius)?;
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
-    let mesh = TetMesh { points, tets };
-    is_good(&mesh).then(|| {
+    let (mut mesh, wall) = (TetMesh { points, tets }, canonical.wall.clone());
+    if is_above(&mesh, LEAST, LEAST_ANGLE) {
         // Limb of each end.
         let mut order = [0, 1, 2];
         order.sort_by_key(|&limb| fork.limbs[limb].end);
-        FilledFork { mesh, discs, wall: canonical.wall.clone(), topology: canonical.topology.ordered(&order) }
-    })
+        return Some(FilledFork { mesh, discs, wall, topology: canonical.topology.ordered(&order) });
+    }
+    // Improvement needs positive tetrahedra. From flat ones it seldom succeeds.
+    if !is_above(&mesh, MENDABLE, 0.0) {
+        return None;
+    }
+    let options = OptimizeOptions { fixed_points: canonical.boundary_points, ..OptimizeOptions::of(Effort::Fast) };
+    optimize(&mut mesh, &options).ok()?;
+    if !is_above(&mesh, LEAST, LEAST_ANGLE) {
+        return None;
+    }
+    let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;
+    Some(FilledFork { mesh, discs, wall, topology: Arc::new(topology) })
 }
 
 /// Moves a point with the limbs of a fork: the mean of its images in their frames.
@@ -128,10 +143,11 @@ fn at_level(field: &mut Field, start: Point3, level: f64, plane: Option<Vec3>, f
     None
 }
 
-fn is_good(mesh: &TetMesh) -> bool {
+/// True if no tetrahedron has a smaller radius ratio or, in degrees, a smaller dihedral angle.
+fn is_above(mesh: &TetMesh, least: f64, angle: f64) -> bool {
     mesh.tets.iter().all(|t| {
         let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
         let ratio = radius_ratio(a, b, c, d);
-        ratio >= LEAST && (ratio >= ANGULAR || dihedral_range([a, b, c, d]).0.to_degrees() >= LEAST_ANGLE)
+        ratio >= least && (ratio >= ANGULAR || dihedral_range([a, b, c, d]).0.to_degrees() >= angle)
     })
 }

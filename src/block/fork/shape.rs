@@ -1,15 +1,23 @@
 //! Shape of a fork, and its cell.
 
-use crate::partition::{Cluster, ClusterEnd, CutId, EndKind};
+use crate::partition::{Cluster, ClusterEnd, CutId, EndKind, ForkCells};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_skeleton::NodeId;
 use std::f64::consts::TAU;
 
-/// Steps of a cell: azimuth in radians, height, logarithm of radii, logarithm of lengths.
-const AZIMUTH: f64 = TAU / 18.0;
-const HEIGHT: f64 = 0.3;
-const RADIUS: f64 = 0.25;
-const LENGTH: f64 = 0.3;
+/// Size of a cell.
+#[derive(Clone, Copy)]
+struct Steps {
+    /// In radians.
+    azimuth: f64,
+    height: f64,
+    /// Of the logarithms of radii and lengths.
+    radius: f64,
+    length: f64,
+}
+
+const FINE: Steps = Steps { azimuth: TAU / 18.0, height: 0.3, radius: 0.25, length: 0.3 };
+const COARSE: Steps = Steps { azimuth: TAU / 12.0, height: 0.4, radius: 0.4, length: 0.45 };
 /// Length of a vessel in the middle of a cell, in radii: about the distance of most cuts.
 const USUAL_LENGTH: f64 = 2.2;
 /// Largest sine of the angle between the axis of a vessel at its cut and its chord.
@@ -48,6 +56,7 @@ pub struct Fork {
 /// Cell of similar forks: sides of the ends, steps of height, azimuths, radii and lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
+    is_coarse: bool,
     sides: [u8; 3],
     height: i8,
     azimuths: [i8; 2],
@@ -95,8 +104,9 @@ impl Fork {
         Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
     }
 
-    /// Cell of the fork; `None` if a step is out of range.
-    pub fn cell(&self) -> Option<Cell> {
+    /// Cell of the fork among those of a size; `None` if a step is out of range.
+    pub fn cell(&self, cells: ForkCells) -> Option<Cell> {
+        let steps = steps(cells == ForkCells::Coarse);
         let normal = self.normal()?;
         let height = normal.dot(&self.limbs[0].axis);
         let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
@@ -108,17 +118,18 @@ impl Fork {
             let step = (x / of).round();
             (step.abs() <= 100.0).then_some(step as i8)
         };
-        let radius = |r: f64| step(libm::log(r / self.radius), RADIUS);
+        let radius = |r: f64| step(libm::log(r / self.radius), steps.radius);
         let mut cell = Cell {
+            is_coarse: cells == ForkCells::Coarse,
             sides: self.limbs.map(|limb| limb.side),
-            height: step(height, HEIGHT)?,
-            azimuths: [step(azimuth(1), AZIMUTH)?, step(azimuth(2), AZIMUTH)?],
+            height: step(height, steps.height)?,
+            azimuths: [step(azimuth(1), steps.azimuth)?, step(azimuth(2), steps.azimuth)?],
             radii: [[0; 2]; 3],
             lengths: [0; 3],
         };
         for (i, limb) in self.limbs.iter().enumerate() {
             cell.radii[i] = [radius(limb.radii[0])?, radius(limb.radii[1])?];
-            cell.lengths[i] = step(libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])), LENGTH)?;
+            cell.lengths[i] = step(libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])), steps.length)?;
         }
         Some(cell)
     }
@@ -138,16 +149,18 @@ fn vessel(cluster: &Cluster, end: &ClusterEnd) -> Option<(Point3, [f64; 2])> {
 
 impl Cell {
     /// Fork in the middle of the cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the
-    /// extension beyond a cut, in radii.
-    pub fn cluster(&self, overrun: f64) -> Cluster {
-        let height = (HEIGHT * f64::from(self.height)).clamp(-0.9, 0.9);
+    /// extension beyond a cut, in radii. `stretch`: factor of all lengths.
+    pub fn cluster(&self, overrun: f64, stretch: f64) -> Cluster {
+        let steps = steps(self.is_coarse);
+        let radius = |step: i8| libm::exp(steps.radius * f64::from(step));
+        let height = (steps.height * f64::from(self.height)).clamp(-0.9, 0.9);
         let across = (1.0 - height * height).sqrt();
         let mut cluster = Cluster::default();
-        for (i, [from, to]) in self.radii.iter().map(|steps| steps.map(radius)).enumerate() {
-            let azimuth = if i == 0 { 0.0 } else { AZIMUTH * f64::from(self.azimuths[i - 1]) };
+        for (i, [from, to]) in self.radii.iter().map(|radii| radii.map(radius)).enumerate() {
+            let azimuth = if i == 0 { 0.0 } else { steps.azimuth * f64::from(self.azimuths[i - 1]) };
             let (y, x) = libm::sincos(azimuth);
             let axis = Vec3::new(across * x, across * y, height);
-            let length = USUAL_LENGTH * to * libm::exp(LENGTH * f64::from(self.lengths[i]));
+            let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * f64::from(self.lengths[i]));
             let at = Point3::from(axis * length);
             let index = cluster.tubes.len() as u32 + 1;
             cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
@@ -163,6 +176,6 @@ impl Cell {
     }
 }
 
-fn radius(step: i8) -> f64 {
-    libm::exp(RADIUS * f64::from(step))
+fn steps(is_coarse: bool) -> Steps {
+    if is_coarse { COARSE } else { FINE }
 }

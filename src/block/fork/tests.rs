@@ -1,20 +1,21 @@
 use super::canonical::Canonical;
-use super::fork;
 use super::image::image;
 use super::shape::Fork;
+use super::{fork, shared_cells};
 use crate::block::contoured::contoured;
 use crate::block::topology::Topology;
 use crate::block::{BlockParams, EndStyle, Finished, mesh_cluster};
-use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, ForkCells};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_mesh::quality::TetQuality;
 use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Watch;
 use nalgebra::Rotation3;
+use rayon::prelude::*;
 
 /// Fork at a node: for each vessel its azimuth in degrees, length and radii at both ends. The first one ends at the node.
 fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [f64; 2]); 3]) -> Cluster {
-    let mut cluster = Cluster::default();
+    let mut cluster = Cluster { cells: ForkCells::Fine, ..Cluster::default() };
     let normal = turn * Vec3::z();
     for (i, (azimuth, length, radii)) in (0..).zip(vessels) {
         let (y, x) = libm::sincos(azimuth.to_radians());
@@ -118,12 +119,13 @@ fn images_turn_with_their_forks() {
 #[test]
 fn the_middle_of_a_cell_is_its_own_image() {
     let params = shared();
-    let cell =
-        Fork::of(&cluster(Point3::origin(), turned(0.5), 0.0, plain())).and_then(|fork| fork.cell()).expect("a cell");
+    let cell = Fork::of(&cluster(Point3::origin(), turned(0.5), 0.0, plain()))
+        .and_then(|fork| fork.cell(ForkCells::Fine))
+        .expect("a cell");
     let canonical = Canonical::of(&cell, &params).expect("a canonical fork");
-    let middle = cell.cluster(2.0 * 1.6 / 3.0);
+    let middle = cell.cluster(2.0 * 1.6 / 3.0, 1.0);
     let fork = Fork::of(&middle).expect("a fork");
-    assert_eq!(fork.cell(), Some(cell));
+    assert_eq!(fork.cell(ForkCells::Fine), Some(cell));
     let made = image(&canonical, &fork, &middle, &params).expect("an image");
     for (p, q) in canonical.points.iter().zip(&made.mesh.points) {
         assert!((p - q).norm() < 1e-2, "{p} {q}");
@@ -164,4 +166,28 @@ fn other_clusters_are_no_forks() {
     let mut apart = straight;
     apart.tubes[2].a += Vec3::new(0.0, 0.0, 1e-9);
     assert!(fork(&apart, &shared()).is_none());
+}
+
+#[test]
+fn only_forks_with_many_alike_have_a_cell() {
+    let fork = |azimuth: f64, radius: f64| {
+        let mut vessels = plain();
+        (vessels[1].0, vessels[1].2) = (azimuth, [radius; 2]);
+        let cluster = cluster(Point3::origin(), turned(azimuth), 0.0, vessels);
+        Cluster { cells: ForkCells::None, ..cluster }
+    };
+    // Four in one fine cell, four in two fine cells of one coarse cell, and one alone.
+    let alike = (0..4).map(|i| fork(122.0 + f64::from(i), 0.95));
+    let similar = [92.0, 94.0, 96.0, 104.0].map(|azimuth| fork(azimuth, 0.5));
+    let clusters: Vec<Cluster> = alike.chain(similar).chain([fork(150.0, 0.2)]).collect();
+    let (fine, coarse) = (ForkCells::Fine, ForkCells::Coarse);
+    let expected = [fine, fine, fine, fine, coarse, coarse, coarse, coarse, ForkCells::None];
+    assert_eq!(shared_cells(clusters.clone().into_par_iter()), expected);
+    assert_eq!(shared_cells(clusters[..3].to_vec().into_par_iter()), [ForkCells::None; 3]);
+    assert!(fork_of(&clusters[0], ForkCells::Fine).is_some() && fork_of(&clusters[0], ForkCells::None).is_none());
+    assert!(fork_of(&clusters[4], ForkCells::Coarse).is_some());
+}
+
+fn fork_of(cluster: &Cluster, cells: ForkCells) -> Option<super::image::FilledFork> {
+    fork(&Cluster { cells, ..cluster.clone() }, &shared())
 }
