@@ -124,7 +124,7 @@ pub fn check_tets(mesh: &TetMesh, expectation: Option<&Expectation>) -> CheckRep
 }
 
 fn unwatched(report: io::Result<CheckReport>) -> CheckReport {
-    report.expect("only cancellation fails, and nobody cancels")
+    report.expect("only cancellation fails, and no listener can ask for it")
 }
 
 struct Check<'a> {

@@ -48,7 +48,7 @@ impl SecondOrder {
     /// # Panics
     /// If a face is no face of a tetrahedron.
     pub fn curved(volume: &VolumeMesh) -> (Self, Curving) {
-        Self::curved_watched(volume, &()).expect("only cancellation fails, and nobody cancels")
+        Self::curved_watched(volume, &()).expect("only cancellation fails, and no listener can ask for it")
     }
 
     /// As [`curved`](Self::curved), with cancellation.
