@@ -183,6 +183,11 @@ fn a_limit_on_tetrahedra_refuses_before_the_work_and_in_the_refinement() {
     assert!(tetrahedralizer.run(&s).unwrap().mesh.tets.len() < 20_000);
     let fine = tetrahedralizer.clone().sizing(Sizing::Constant(0.01)).run(&s).unwrap_err();
     assert!(matches!(fine, TetError::TooMany { estimate, limit: 20_000 } if estimate > 10_000_000), "{fine}");
+    // So short that the size field has no cubes.
+    for interior in [Interior::default(), Interior::Growing { growth: 1.3 }] {
+        let finest = Tetrahedralizer::new().interior(interior).sizing(Sizing::Constant(1e-7)).run(&s).unwrap_err();
+        assert!(matches!(finest, TetError::TooMany { .. }), "{finest}");
+    }
     let bound = Refinement::default().max_volume(1e-5);
     let refined = tetrahedralizer.interior(Interior::None).refine(bound).run(&s).unwrap_err();
     assert!(matches!(refined, TetError::TooMany { .. }), "{refined}");

@@ -169,6 +169,12 @@ pub(super) fn sized_points(r: &Request) -> Result<Option<Vec<Point3>>, TetError>
     let wall = wall(r);
     let options = TreeOptions { is_fine: r.spaced, ..tree_options(r.interior, r.sizing) };
     let Some(tree) = size_tree_around(&wall, r.sources, r.sizing, longest, &options) else {
+        // Far too many cubes have no indices.
+        let constant = if let Sizing::Constant(size) = r.sizing { Some(*size) } else { None };
+        if let Some(length) = longest.into_iter().chain(constant).reduce(f64::min) {
+            let limit = r.max_tets.unwrap_or(u32::MAX as usize);
+            within(estimate_uniform(length / TreeOptions::edge_of(1.0), &wall), limit)?;
+        }
         return Ok(None);
     };
     let grading = tree.grading().filter(|_| r.spaced);
