@@ -166,7 +166,9 @@ fn regions_that_cannot_be_made_are_refused() {
     let (cut, torn) = (ball(&folder, "cut.stl", 0.0, 10.3), format!("torn={}", open.to_str().expect("text")));
     let (beyond, oblique) = (ball(&folder, "beyond.stl", 90.0, 9.0), ball(&folder, "oblique.stl", 9.4, 10.0));
     let crossing = "pass through the surface of across, first between nodes 1 and 2 at";
-    let cases: [(&[&str], i32, &str); 22] = [
+    let cases: [(&[&str], i32, &str); 24] = [
+        (&["--tissue", "box", "--tissue-size", "1e-5"], 3, "tetrahedra, more than the limit of"),
+        (&["--tissue", "box", "--tissue-size", "0.2", "--memory", "20MB"], 3, "give a larger --tissue-size"),
         (&["--tissue", "hull:-1"], 2, "invalid margin"),
         (&["--tissue", "hull:0.001"], 3, "the margin 0.001 of the hull is too small"),
         (&["--tissue", "box:0.1", "--wall", "0.5r"], 3, "give a wider margin"),

@@ -17,6 +17,7 @@ use super::log;
 use super::network::NetworkArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
+use super::regions::advice;
 use super::run::remarks;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::embed::{EmbedSummary, table};
@@ -30,7 +31,6 @@ use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_network::{PrepareParams, PrepareReport, Prepared, prepare};
 use anastomesh_skeleton::{CleanReport, NodeId, Skeleton};
-use anastomesh_tet::TetError;
 use rustc_hash::FxHashSet;
 
 /// Peak memory per tetrahedron, in bytes.
@@ -188,13 +188,8 @@ impl EmbedRun<'_> {
         if let DomainError::Pieces(PiecesError::Outside { edge, .. } | PiecesError::Mesh { edge }) = &mut error {
             *edge = edges.get(*edge as usize).copied().unwrap_or(*edge);
         }
-        let hint = match error {
-            DomainError::Tissue(TetError::TooMany { .. }) => {
-                "; give a larger --embed-size or --tissue-growth, or raise --memory"
-            }
-            _ => "",
-        };
-        Failure::input(format!("{}: {error}{hint}", self.network.network.display()))
+        let advice = advice(&error, "--embed-size");
+        Failure::input(format!("{}: {error}{advice}", self.network.network.display()))
     }
 }
 

@@ -26,7 +26,7 @@ use super::page::ReportArgs;
 use super::prepare::CureArgs;
 use super::progress::Bars;
 use super::refine::RefineArgs;
-use super::regions::{Lumen, Regions, with_regions};
+use super::regions::{self, Lumen, Regions, with_regions};
 use super::run::remarks;
 use super::stop::Stop;
 use super::work::{self, WorkArgs, WorkDir};
@@ -224,6 +224,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pool = thread_pool(args.common.threads)?;
     let prepared = pool.install(|| args.prepared(plan, flow, &mut domain))?;
+    regions::limit(&mut domain, &prepared.rough_estimate(), args.blocks.memory);
     let Networks { prepared: network, names, .. } = &prepared.networks;
     let checked = pool.install(|| domain.check(network, &|node| names.of(NodeId(node))));
     checked.map_err(|e| args.no_regions(&e))?;

@@ -7,9 +7,10 @@ use super::organ::{Vessels, organ};
 use super::plan::{DomainPlan, Site, TissuePlan, TissueShape};
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::{Aabb, Point3, Tube, Vec3, point_triangle, segment_segment};
+use anastomesh_mesh::quality::volume6;
 use anastomesh_skeleton::{EdgeId, Node, Skeleton};
 use anastomesh_tet::Tetrahedralizer;
-use anastomesh_tet::parts::Watch;
+use anastomesh_tet::parts::{Watch, ensure_countable};
 use rayon::prelude::*;
 
 /// Fraction of the radius within which a surface certainly meets the lumen, whose radius is exact to a few percent.
@@ -19,7 +20,8 @@ const AT_GATE: f64 = 3.0;
 
 impl DomainPlan {
     /// Checks names and ranges, and the surfaces around the tissue and in it. These must be closed, must not meet each other or
-    /// vessels, and the outer one must contain all. `name` is the name of a node in the file.
+    /// vessels, and the outer one must contain all. A size with too many tetrahedra is refused. `name` is the name of a node in
+    /// the file.
     ///
     /// # Errors
     /// The first fault.
@@ -43,7 +45,23 @@ impl DomainPlan {
         for (i, region) in (1..).zip(&tissue.regions) {
             crosses_none(&region.surface, i, (tissue, network), name)?;
         }
+        if let Some(size) = tissue.size {
+            let free = volume(&self.expected_organ(tissue, network)?) - self.volume_of_vessels(network);
+            ensure_countable(free.max(0.0), size, tissue.max_tets).map_err(DomainError::Tissue)?;
+        }
         Ok(())
+    }
+
+    /// Volume of the vessels with their shells. Parts in which vessels overlap count several times.
+    fn volume_of_vessels(&self, network: &Skeleton) -> f64 {
+        let frustum = |edge: EdgeId| {
+            let ends = network.edge(edge).nodes.map(|node| network.node(node).original);
+            let tube = network.tube(edge);
+            let [a, b] =
+                [(tube.ra, 0.0), (tube.rb, 1.0)].map(|(radius, t)| radius + self.thickness(&Site { radius, ends, t }));
+            std::f64::consts::PI / 3.0 * tube.length() * (a * a + a * b + b * b)
+        };
+        network.edge_ids().map(frustum).sum()
     }
 
     /// Surface of the organ, with a sphere at each node for the vessels.
@@ -148,6 +166,15 @@ fn meets(tube: &Tube, corners: [&Point3; 3]) -> Option<Point3> {
     passes([&tube.a, &tube.b], corners, true).then(|| middle(corners))
 }
 
+fn volume(surface: &TriMesh) -> f64 {
+    let apex = surface.points.first().copied().unwrap_or_default();
+    let signed = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| &surface.points[v as usize]);
+        volume6(&apex, a, b, c)
+    };
+    (surface.triangles.iter().map(signed).sum::<f64>() / 6.0).abs()
+}
+
 fn middle([a, b, c]: [&Point3; 3]) -> Point3 {
     Point3::from((a.coords + b.coords + c.coords) / 3.0)
 }
@@ -158,6 +185,7 @@ mod tests {
     use super::*;
     use anastomesh_mesh::shapes::sphere_surface;
     use anastomesh_skeleton::fixtures::network;
+    use anastomesh_tet::TetError;
 
     fn ball(z: f64, radius: f64) -> TriMesh {
         let ball = sphere_surface(2);
@@ -215,6 +243,21 @@ mod tests {
         let hull = |z| TissuePlan { shape: TissueShape::Hull { margin: Some(4.0) }, ..boxed(z) };
         checked(hull(-3.0)).expect("inside");
         assert!(matches!(checked(hull(-9.0)), Err(DomainError::RegionOutside { .. })));
+    }
+
+    #[test]
+    fn sizes_with_too_many_tetrahedra_are_refused() {
+        for shape in
+            [TissueShape::Box { margin: None }, TissueShape::Hull { margin: None }, TissueShape::Organ(ball(5.0, 20.0))]
+        {
+            let tissue = |size: f64| TissuePlan::new(shape.clone()).size(size).max_tets(1_000_000);
+            checked(tissue(1.0)).expect("few");
+            for size in [0.05, 1e-5, 1e-300] {
+                let fault = checked(tissue(size));
+                let is_refused = matches!(fault, Err(DomainError::Tissue(TetError::TooMany { limit: 1_000_000, .. })));
+                assert!(is_refused, "{size} {fault:?}");
+            }
+        }
     }
 
     #[test]

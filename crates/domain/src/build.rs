@@ -73,8 +73,13 @@ impl Domain {
         let layout = Layout::new(&surface, &shells, around.as_ref())?;
         let fill = |tissue: &TissuePlan| {
             let (filler, watch) = (tissue.filler(), Watch::of(progress));
-            let fill = |outside| fill_in_pieces(&filler, outside, tissue.piece, &watch).map_err(DomainError::Tissue);
-            layout.outsides().map(fill).collect()
+            let mut left = tissue.max_tets;
+            let fill = |outside| {
+                let made = fill_in_pieces(&filler.clone().max_tets(left), outside, tissue.piece, &watch)?;
+                left = left.saturating_sub(made.mesh.tets.len());
+                Ok(made)
+            };
+            layout.outsides().map(fill).collect::<Result<_, _>>().map_err(DomainError::Tissue)
         };
         let tissue: Vec<Tetrahedralization> = plan.tissue.as_ref().map_or(Ok(Vec::new()), fill)?;
         let (mesh, regions) = assemble(lumen, &layout, &tissue, plan);

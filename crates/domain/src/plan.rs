@@ -1,7 +1,7 @@
 //! Options of the regions around a lumen.
 
 use anastomesh_mesh::{NamedRegion, TriMesh};
-use anastomesh_tet::{Layers, LayersError};
+use anastomesh_tet::{Layers, LayersError, Tetrahedralizer};
 
 /// Length that depends on the radius of the vessel: thickness of a shell, or edge length at a vessel.
 ///
@@ -148,6 +148,8 @@ pub struct TissuePlan {
     /// Maximum triangles around tissue that is filled as a whole. Larger regions are divided into pieces, which are filled at the
     /// same time.
     pub piece: usize,
+    /// Maximum number of tetrahedra of the tissue, if it is made in memory.
+    pub max_tets: usize,
 }
 
 anastomesh_mesh::setters!(TissuePlan {
@@ -158,6 +160,7 @@ anastomesh_mesh::setters!(TissuePlan {
     growth: f64,
     gates: Vec<u32>,
     piece: usize,
+    max_tets: usize,
 });
 
 impl TissuePlan {
@@ -178,6 +181,7 @@ impl TissuePlan {
             growth: Self::GROWTH,
             gates,
             piece: Self::PIECE,
+            max_tets: Tetrahedralizer::MAX_TETS,
         }
     }
 }

@@ -260,6 +260,11 @@ impl Tetrahedralizer {
         self
     }
 
+    /// Checks a number of tetrahedra that a run has reached.
+    pub(super) fn ensure_within(&self, tets: usize) -> Result<(), TetError> {
+        if tets <= self.max_tets { Ok(()) } else { Err(TetError::TooMany { estimate: tets, limit: self.max_tets }) }
+    }
+
     /// Requested interior and sizing.
     pub(super) fn spacing(&self) -> (&Interior, &Sizing) {
         (&self.interior, &self.sizing)

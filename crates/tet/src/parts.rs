@@ -10,3 +10,4 @@ pub use crate::optimize::{OptimizeOptions, optimize};
 pub use crate::pieces::{Piece, Pieces, fill_in_pieces};
 pub use crate::progress::{Counter, Watch};
 pub use crate::shells::Prisms;
+pub use crate::sized::ensure_countable;

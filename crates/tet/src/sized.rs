@@ -6,8 +6,8 @@ use super::options::{Interior, Refinement, Sizing};
 use super::plc::{InputKind, Region};
 use super::progress::Stage;
 use super::refine::{
-    Goals, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_spaced, estimate_tets,
-    estimate_uniform, graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
+    Goals, PER_LENGTH, RefineReport, RegionGoals, SizeLimit, SizeTree, TreeOptions, Wall, estimate_spaced,
+    estimate_tets, estimate_uniform, graded_points, limit_by_gaps, refine_complex, spaced_points, surrounding_points,
 };
 use super::regions::Regions;
 use super::request::Request;
@@ -46,6 +46,9 @@ const REGULAR_HEIGHT: f64 = 0.816;
 
 /// Tetrahedra per point that refinement adds.
 const TETS_PER_POINT: usize = 6;
+
+/// Largest number of tetrahedra that is told.
+const LARGEST_ESTIMATE: f64 = 1e18;
 
 /// Fraction of a volume bound that refinement aims at if vertices are moved afterwards.
 const MARGIN: f64 = 0.7;
@@ -231,8 +234,18 @@ fn within(estimate: f64, limit: usize) -> Result<(), TetError> {
 
 /// Rounds an estimate to two digits.
 fn rounded(estimate: f64) -> usize {
+    let estimate = estimate.min(LARGEST_ESTIMATE);
     let unit = libm::pow(10_f64, (libm::log10(estimate).floor() - 1.0).max(0.0));
     ((estimate / unit).ceil() * unit) as usize
+}
+
+/// Checks that a volume filled with tetrahedra of at most this edge length may have at most `limit` of them, as
+/// [`fill_spaced`](crate::parts::fill_spaced) makes them. The number is a lower bound.
+///
+/// # Errors
+/// [`TetError::TooMany`].
+pub fn ensure_countable(volume: f64, size: f64, limit: usize) -> Result<(), TetError> {
+    within(PER_LENGTH * volume / libm::pow(size, 3.0), limit)
 }
 
 /// Splits tetrahedra that violate the goals of a run; segments must be held.

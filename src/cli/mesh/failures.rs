@@ -3,17 +3,20 @@
 use super::Args;
 use crate::cli::exit::Failure;
 use crate::cli::progress::Bars;
+use crate::cli::regions::advice;
 use crate::cli::run::failure;
 use crate::cli::stop;
 use crate::pipeline::MeshPlan;
 use crate::report::verdict::missing;
 use crate::run::MeshingError;
+use anastomesh_domain::DomainError;
 use anastomesh_skeleton::NodeId;
 
 impl Args {
     /// Failure to make the regions.
-    pub(super) fn no_regions(&self, error: &dyn std::fmt::Display) -> Failure {
-        Failure::input(format!("{}: {error}", self.network.network.display()))
+    pub(super) fn no_regions(&self, error: &DomainError) -> Failure {
+        let advice = advice(error, "--tissue-size");
+        Failure::input(format!("{}: {error}{advice}", self.network.network.display()))
     }
 
     /// Failure of a run, after its reports.

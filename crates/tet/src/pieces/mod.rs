@@ -100,7 +100,7 @@ impl Piece {
 }
 
 /// Fills a closed surface that is oriented outwards as [`fill_spaced`] does, in pieces of at most about `most` triangles, on
-/// all threads. The result has no summary.
+/// all threads. The result has no summary. The limit on tetrahedra holds for all pieces together.
 ///
 /// # Errors
 /// See [`fill_spaced`].
@@ -117,9 +117,10 @@ pub fn fill_in_pieces(
     input::validate(surface, &[], InputKind::Closed)?;
     let silent = watch.silent();
     let Pieces { points, pieces, faces } = Pieces::of(by, surface, most, &silent)?;
-    let done = AtomicUsize::new(0);
+    let (done, total) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let fill = |piece: &Piece| {
         let mesh = fill_spaced(by, &piece.surface, &silent)?.mesh;
+        by.ensure_within(total.fetch_add(mesh.tets.len(), Ordering::Relaxed) + mesh.tets.len())?;
         watch.report(Stage::Tissue, done.fetch_add(1, Ordering::Relaxed) + 1, pieces.len())?;
         Ok(mesh)
     };

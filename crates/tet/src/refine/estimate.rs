@@ -10,7 +10,7 @@ const PER_CUBE: f64 = 12.0;
 
 /// Tetrahedra per cube of an edge length, between points that are selected by their distance, for edge lengths that do not
 /// grow. Regular ones would be 8.5. This and [`STEEPER`] are found for lines in tissue at growths of 1.3 and 2.
-const PER_LENGTH: f64 = 5.6;
+pub const PER_LENGTH: f64 = 5.6;
 
 /// Exponent of the increase of that number with the slope of the edge lengths. Steep lengths are not reached.
 const STEEPER: f64 = 1.2;

@@ -12,7 +12,7 @@ mod spaced;
 mod tree;
 mod wall;
 
-pub use estimate::{estimate_spaced, estimate_tets, estimate_uniform};
+pub use estimate::{PER_LENGTH, estimate_spaced, estimate_tets, estimate_uniform};
 pub use gaps::limit_by_gaps;
 pub use goals::{Fault, Goals, RegionGoals};
 pub(crate) use goals::{circumcenter, smallest_sphere};
