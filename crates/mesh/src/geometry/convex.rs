@@ -3,27 +3,82 @@
 /// Value of a function, its argument, and a payload.
 pub type Sample = (f64, f64, f64);
 
-/// Minimum of a convex function by golden section, to about 1e-9 of the range. Stops early if the function cannot be
-/// below `enough` or cannot fall further; the value is then the least one seen.
+/// Maximum number of samples between the ends.
+const SAMPLES: usize = 44;
+/// Distance of samples beside the least one, as a share of the range: at first, and in the end.
+const BESIDE: [f64; 2] = [1e-6, 1e-9];
+/// Factor from each such distance to the next.
+const CLOSER: f64 = 0.03;
+/// Ratio of the golden section.
+const GOLDEN: f64 = 0.381_966_011_250_105_1;
+
+/// Minimum of a convex function by parabolas and golden section, to about 1e-9 of the range. Stops early if the function
+/// cannot be below `enough` or cannot fall further; the value is then the least one seen.
+///
+/// Source: R. P. Brent, Algorithms for Minimization without Derivatives (1973), chapter 5. Samples on both sides of the least
+/// one, and lower bounds from chords, replace his stopping rule.
 pub fn minimise_convex(at: impl Fn(f64) -> Sample, [low, high]: [f64; 2], enough: f64) -> Sample {
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let inner = [high - ratio * (high - low), low + ratio * (high - low)];
-    let mut points = [at(low), at(inner[0]), at(inner[1]), at(high)];
-    // 0.618^44 < 1e-9.
-    for _ in 0..44 {
-        let best = least(&points);
+    let step = GOLDEN * (high - low);
+    let mut points = [at(low), at(low + step), at(high - step), at(high)];
+    let mut beside = BESIDE[0] * (high - low);
+    let mut widths = [f64::INFINITY; 2];
+    for _ in 0..SAMPLES {
         let floor = lower_bound(&points);
+        let (left, best, right) = around_least(&points);
+        let width = right.1 - left.1;
         if floor >= enough || best.0 - floor <= 1e-12 * best.0.abs() {
-            return best;
+            break;
         }
-        let [a, b, c, d] = points;
-        points = if b.0 <= c.0 {
-            [a, at(c.1 - ratio * (c.1 - a.1)), b, c]
-        } else {
-            [b, c, at(b.1 + ratio * (d.1 - b.1)), d]
-        };
+        if width <= 2.5 * beside {
+            if beside <= BESIDE[1] * (high - low) {
+                break;
+            }
+            beside *= CLOSER;
+        }
+        let is_slow = width > 0.5 * widths[0];
+        widths = [widths[1], width];
+        let far = if right.1 - best.1 > best.1 - left.1 { right.1 } else { left.1 };
+        let vertex = if is_slow { None } else { vertex(left, best, right) };
+        let next = vertex.unwrap_or(best.1 + GOLDEN * (far - best.1));
+        let next = if (next - best.1).abs() < beside { best.1 + beside.copysign(far - best.1) } else { next };
+        if next <= left.1 || next >= right.1 {
+            break;
+        }
+        points = with(&points, at(next));
     }
     least(&points)
+}
+
+/// The least of four points with its neighbours, or twice itself at an end.
+fn around_least(points: &[Sample; 4]) -> (Sample, Sample, Sample) {
+    let i = (1..4).fold(0, |best, i| if points[i].0 < points[best].0 { i } else { best });
+    (points[i.saturating_sub(1)], points[i], points[(i + 1).min(3)])
+}
+
+/// Argument of the least value of the parabola through three points.
+fn vertex(left: Sample, best: Sample, right: Sample) -> Option<f64> {
+    let (before, after) = (best.1 - left.1, right.1 - best.1);
+    let (falls, rises) = ((left.0 - best.0) / before, (right.0 - best.0) / after);
+    let curvature = falls + rises;
+    (before > 0.0 && after > 0.0 && curvature > 0.0)
+        .then(|| best.1 + 0.5 * (falls * after - rises * before) / curvature)
+}
+
+/// Four of five points: the least one, its neighbours, and another.
+fn with(points: &[Sample; 4], new: Sample) -> [Sample; 4] {
+    let [a, b, c, d] = *points;
+    let place = points.partition_point(|p| p.1 < new.1);
+    let five = match place {
+        0 | 1 => [a, new, b, c, d],
+        2 => [a, b, new, c, d],
+        _ => [a, b, c, new, d],
+    };
+    let i = (1..5).fold(0, |best, i| if five[i].0 < five[best].0 { i } else { best });
+    if i < 2 || i == 2 && five[3].1 - five[2].1 <= five[2].1 - five[1].1 {
+        [five[0], five[1], five[2], five[3]]
+    } else {
+        [five[1], five[2], five[3], five[4]]
+    }
 }
 
 fn least(points: &[Sample; 4]) -> Sample {
