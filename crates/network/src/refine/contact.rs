@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// Distances along the skeleton between the ends of two edges; infinite if long.
 type Ways = [[f64; 2]; 2];
 
-/// Two edges without a common node that may come close to each other.
+/// Two edges without a common node that may come close to each other, in ascending order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub edges: [EdgeId; 2],
@@ -65,39 +65,15 @@ impl Contacts {
     /// `measured` networks without those in the crotch of a bifurcation, which do not overlap.
     pub fn find(frame: &Frame, clearance: f64, skin: f64, measured: bool) -> Self {
         let s = &frame.skeleton;
-        let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
-        let tree = Bvh::new(&boxes);
-        let chunk = 256;
-        let found: Vec<(Vec<Pair>, Vec<Ways>)> = (0..boxes.len().div_ceil(chunk))
-            .into_par_iter()
-            .map_init(
-                || (Vec::new(), [LocalDistances::default(), LocalDistances::default()]),
-                |(near, walks), c| {
-                    let mut out = (Vec::new(), Vec::new());
-                    for e in c * chunk..((c + 1) * chunk).min(boxes.len()) {
-                        near.clear();
-                        tree.query(&boxes[e], |f| {
-                            if f as usize > e {
-                                near.push(EdgeId(f));
-                            }
-                        });
-                        near.sort_unstable();
-                        pairs_of(frame, EdgeId(e as u32), near, clearance, skin, walks, &mut out);
-                    }
-                    out
-                },
-            )
-            .collect();
+        let found = search(frame, clearance, skin, &vec![true; s.edges.len()]);
         let crotches = if measured { in_crotches(s, &frame.adjacency, clearance) } else { Vec::new() };
         let crotches: FxHashSet<[EdgeId; 2]> = crotches.into_iter().collect();
         let tips = if measured { tip_clearances(s, &frame.adjacency, clearance) } else { FxHashMap::default() };
         let mut contacts = Self { tips, ..Self::default() };
-        for (pairs, ways) in found {
-            let shift = contacts.ways.len() as u32;
-            contacts.ways.extend(ways);
-            contacts.pairs.extend(
-                pairs.into_iter().map(|p| Pair { ways: if p.ways == u32::MAX { p.ways } else { p.ways + shift }, ..p }),
-            );
+        for (pairs, ways) in &found {
+            for pair in pairs {
+                contacts.add(pair, ways);
+            }
         }
         for node in s.node_ids() {
             let edges = frame.adjacency.edges(node);
@@ -110,6 +86,34 @@ impl Contacts {
         }
         contacts.pairs.retain(|pair| !crotches.contains(&ascending(pair.edges)));
         contacts
+    }
+
+    /// Searches again for the pairs of edges of `nodes`. Other nodes may still move as far as before the last search.
+    pub fn search_again(&mut self, frame: &Frame, clearance: f64, skin: f64, nodes: &[bool]) {
+        let is_searched: Vec<bool> =
+            frame.skeleton.edges.iter().map(|edge| edge.nodes.iter().any(|node| nodes[node.index()])).collect();
+        let found = search(frame, clearance, skin, &is_searched);
+        let mut new: Vec<(Pair, &[Ways])> =
+            found.iter().flat_map(|(pairs, ways)| pairs.iter().map(move |pair| (*pair, &ways[..]))).collect();
+        new.par_sort_unstable_by_key(|(pair, _)| pair.edges);
+        let (old_pairs, old_ways) = (std::mem::take(&mut self.pairs), std::mem::take(&mut self.ways));
+        let mut new = new.into_iter().peekable();
+        for pair in old_pairs.iter().filter(|pair| pair.edges.iter().all(|edge| !is_searched[edge.index()])) {
+            while let Some((pair, ways)) = new.next_if(|(other, _)| other.edges < pair.edges) {
+                self.add(&pair, ways);
+            }
+            self.add(pair, &old_ways);
+        }
+        new.for_each(|(pair, ways)| self.add(&pair, ways));
+    }
+
+    /// Adds a pair whose distances along the skeleton are in `ways`.
+    fn add(&mut self, pair: &Pair, ways: &[Ways]) {
+        let own = ways.get(pair.ways as usize).map_or(u32::MAX, |own| {
+            self.ways.push(*own);
+            self.ways.len() as u32 - 1
+        });
+        self.pairs.push(Pair { ways: own, ..*pair });
     }
 
     /// Drops pairs whose nodes are all fixed.
@@ -185,6 +189,33 @@ fn ascending([e, f]: [EdgeId; 2]) -> [EdgeId; 2] {
     [e.min(f), e.max(f)]
 }
 
+/// Pairs of edges, one of which at least is searched, with their distances along the skeleton. Those of the first edge are
+/// sorted, in chunks.
+fn search(frame: &Frame, clearance: f64, skin: f64, is_searched: &[bool]) -> Vec<(Vec<Pair>, Vec<Ways>)> {
+    let s = &frame.skeleton;
+    let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
+    let tree = Bvh::new(&boxes);
+    let edges: Vec<u32> = (0..).zip(is_searched).filter_map(|(e, &searched)| searched.then_some(e)).collect();
+    let chunks = edges.par_chunks(256).map_init(
+        || (Vec::new(), [LocalDistances::default(), LocalDistances::default()]),
+        |(near, walks), chunk| {
+            let mut out = (Vec::new(), Vec::new());
+            for &e in chunk {
+                near.clear();
+                tree.query(&boxes[e as usize], |f| {
+                    if f > e || !is_searched[f as usize] {
+                        near.push(EdgeId(f));
+                    }
+                });
+                near.sort_unstable();
+                pairs_of(frame, EdgeId(e), near, clearance, skin, walks, &mut out);
+            }
+            out
+        },
+    );
+    chunks.collect()
+}
+
 fn pairs_of(
     frame: &Frame,
     first: EdgeId,
@@ -223,6 +254,12 @@ fn pairs_of(
         if ways.iter().flatten().any(|w| w.is_finite()) {
             out.0[i].ways = out.1.len() as u32;
             out.1.push(ways);
+        }
+    }
+    for pair in out.0[start..].iter_mut().filter(|pair| !pair.edges.is_sorted()) {
+        pair.edges.reverse();
+        if let Some([[_, a], [b, _]]) = out.1.get_mut(pair.ways as usize) {
+            std::mem::swap(a, b);
         }
     }
 }
@@ -303,4 +340,44 @@ fn parting(a: &Tube, b: &Tube) -> Vec3 {
     let mut axis = Vec3::zeros();
     axis[d.iamin()] = 1.0;
     d.cross(&axis).try_normalize(0.0).unwrap_or(axis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::tangle;
+    use super::*;
+    use anastomesh_skeleton::paper_unit;
+
+    #[test]
+    fn searching_again_finds_the_contacts_of_moved_nodes() {
+        let skeleton = tangle(6, 3);
+        let unit = paper_unit(&skeleton);
+        let mut frame = Frame::new(skeleton, 1e9, 1e9, unit);
+        let (clearance, skin) = (1.1, 30.0 * unit);
+        let mut contacts = Contacts::find(&frame, clearance, skin, false);
+        let before: Vec<_> = contacts.pairs.iter().map(|pair| pair.edges).collect();
+        let is_moved: Vec<bool> = (0..frame.skeleton.nodes.len()).map(|i| i % 7 == 3).collect();
+        for (node, _) in frame.skeleton.nodes.iter_mut().zip(&is_moved).filter(|(_, moved)| **moved) {
+            node.position += Vec3::new(4.0, -3.0, 2.0) * unit;
+        }
+        contacts.search_again(&frame, clearance, skin, &is_moved);
+        let anew = Contacts::find(&frame, clearance, skin, false);
+        let edges = |contacts: &Contacts| contacts.pairs.iter().map(|pair| pair.edges).collect::<Vec<_>>();
+        assert_eq!(edges(&contacts), edges(&anew));
+        assert_ne!(edges(&anew), before);
+        let is_searched = |e: EdgeId| frame.skeleton.edge(e).nodes.iter().any(|n| is_moved[n.index()]);
+        let (mut reversed, mut compared) = (0, 0);
+        for (pair, other) in contacts.pairs.iter().zip(&anew.pairs) {
+            let [own, other] = [(&contacts, pair), (&anew, other)].map(|(of, pair)| of.ways.get(pair.ways as usize));
+            let (Some(own), Some(other), true) = (own, other, pair.edges.into_iter().any(is_searched)) else {
+                continue;
+            };
+            compared += 1;
+            reversed += usize::from(!is_searched(pair.edges[0]) && own[0][1] != own[1][0]);
+            for (x, y) in own.as_flattened().iter().zip(other.as_flattened()) {
+                assert!(!(x.is_finite() && y.is_finite()) || (x - y).abs() < 1e-9 * x.max(1.0), "{own:?} {other:?}");
+            }
+        }
+        assert!(compared > 50 && reversed > 10, "{compared} {reversed}");
+    }
 }

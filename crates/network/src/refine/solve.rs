@@ -21,6 +21,10 @@ const AVERAGE: f64 = 0.25;
 const RATES: [f64; 2] = [0.1, 1.5];
 const FALL: f64 = 0.7;
 const RISE: f64 = 1.1;
+/// Displacement of nodes whose contacts are searched again, in skins. Those beyond half a skin must be.
+const FAR: f64 = 0.25;
+/// Minimum number of nodes per node that has moved that far. If there are fewer, all contacts are searched.
+const FEW: usize = 3;
 /// Interval between bend insertions, as a fraction of the iterations.
 const BENDS: f64 = 0.125;
 /// Number of first iterations that are all sampled, if any are.
@@ -161,7 +165,7 @@ struct Solver<'a> {
     frame: Frame,
     unit: f64,
     contacts: Contacts,
-    /// Maximum displacement of each node since the last contact search.
+    /// Maximum displacement of each node since the last search for its contacts.
     moved: Vec<f64>,
     last: Vec<Vec3>,
     rate: Vec<f64>,
@@ -213,10 +217,7 @@ impl<'a> Solver<'a> {
         // Pairs further apart than the skin cannot touch before a node has moved by half of it.
         let skin = 2.0 * self.unit;
         if self.moved.iter().any(|&m| m > 0.5 * skin) {
-            // Frees the old contacts first, to save memory.
-            self.contacts = Contacts::default();
-            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin, self.leashes.is_some());
-            self.moved.fill(0.0);
+            self.find_contacts(skin);
         }
         let mut sum = vec![Vec3::zeros(); self.moved.len()];
         let mut count = vec![0_u32; self.moved.len()];
@@ -248,6 +249,21 @@ impl<'a> Solver<'a> {
         shape::smooth_steps(&self.frame, &mut sum, &count);
         self.advance(&sum);
         contacts.len() + room.len()
+    }
+
+    /// Searches for contacts, if possible of nodes that have moved far alone.
+    fn find_contacts(&mut self, skin: f64) {
+        let is_far: Vec<bool> = self.moved.iter().map(|&m| m > FAR * skin).collect();
+        let far = is_far.iter().filter(|&&is_far| is_far).count();
+        if self.leashes.is_some() || far > is_far.len() / FEW {
+            // Frees the old contacts first, to save memory.
+            self.contacts = Contacts::default();
+            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin, self.leashes.is_some());
+            self.moved.fill(0.0);
+        } else {
+            self.contacts.search_again(&self.frame, self.params.clearance, skin, &is_far);
+            self.moved.iter_mut().zip(is_far).filter(|(_, is_far)| *is_far).for_each(|(moved, _)| *moved = 0.0);
+        }
     }
 
     /// Moves every node by its step times its rate, within its limit.
