@@ -37,8 +37,12 @@ impl DomainPlan {
             let fault = |source| DomainError::Region { region: region.name.clone(), source };
             Tetrahedralizer::new().check(&region.surface).map_err(fault)?;
         }
-        if matches!(tissue.shape, TissueShape::Box { .. }) || !tissue.regions.is_empty() {
-            let mut surfaces = vec![self.expected_organ(tissue, network)?];
+        let is_nested = matches!(tissue.shape, TissueShape::Box { .. }) || !tissue.regions.is_empty();
+        let organ =
+            if is_nested || tissue.size.is_some() { self.expected_organ(tissue, network)? } else { TriMesh::default() };
+        let of_organ = volume(&organ);
+        if is_nested {
+            let mut surfaces = vec![organ];
             surfaces.extend(tissue.regions.iter().map(|region| tidy(&region.surface)));
             check_nested(&surfaces, tissue)?;
         }
@@ -46,7 +50,7 @@ impl DomainPlan {
             crosses_none(&region.surface, i, (tissue, network), name)?;
         }
         if let Some(size) = tissue.size {
-            let free = volume(&self.expected_organ(tissue, network)?) - self.volume_of_vessels(network);
+            let free = of_organ - self.volume_of_vessels(network);
             ensure_countable(free.max(0.0), size, tissue.max_tets).map_err(DomainError::Tissue)?;
         }
         Ok(())
