@@ -17,6 +17,7 @@ mod normal;
 mod place;
 pub mod predicates;
 mod ray;
+mod star;
 mod total;
 mod tri_tri;
 mod tube;
@@ -31,6 +32,7 @@ pub(crate) use fans::Fans;
 pub use normal::unit_normal;
 pub use place::place_key;
 pub use ray::crossing;
+pub(crate) use star::is_star_shaped;
 pub use total::Total;
 pub(crate) use tri_tri::contacts_with;
 pub use tri_tri::{

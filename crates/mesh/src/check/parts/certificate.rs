@@ -9,14 +9,13 @@ use crate::check::labels;
 use crate::check::nested::{Enclosed, enclosed};
 use crate::check::result::{Line, LineResult, Offender, OffenderKind, Tally};
 use crate::check::surface::Boundary;
-use crate::check::surfaces::{Surface, Surfaces};
+use crate::check::surfaces::{Surface, Surfaces, surfaces};
 use crate::face_key;
-use crate::geometry::Aabb;
-use crate::geometry::DisjointSets;
 use crate::geometry::predicates::in_exact_range;
+use crate::geometry::{Aabb, DisjointSets, Point3, Vec3, is_star_shaped};
 use crate::quality::{QualitySum, Spokes};
+use nalgebra::Matrix3;
 use std::borrow::Borrow;
-use std::iter;
 
 /// Pairs of faces that meet improperly which a certificate keeps.
 const KEPT_INTERSECTIONS: usize = 100;
@@ -46,10 +45,11 @@ pub fn certify_with<A: Borrow<TetAdjacency>>(part: &PartView, adjacency: impl Fn
     }
     let adjacency = adjacency();
     let adjacency = adjacency.borrow();
-    if !certificate.measure_cells(mesh, adjacency) {
+    let are_cells_sound = certificate.measure_cells(mesh, adjacency);
+    if !are_cells_sound {
         certificate.take(cells::lines(mesh, adjacency));
     }
-    certificate.look_at_boundary(part, adjacency);
+    certificate.look_at_boundary(part, adjacency, are_cells_sound);
     // Else equal points are excluded by what has been found, see `super`.
     if !certificate.faults.is_empty() {
         certificate.take([cells::no_duplicate_points(mesh)]);
@@ -117,10 +117,12 @@ impl Certificate {
     }
 
     /// Everything about the part's closed surface.
-    fn look_at_boundary(&mut self, part: &PartView, adjacency: &TetAdjacency) {
+    fn look_at_boundary(&mut self, part: &PartView, adjacency: &TetAdjacency, are_cells_sound: bool) {
         let handles: Vec<u32> = adjacency.boundary().collect();
         let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&part.mesh.tets, handle)).collect();
-        let (owners, surfaces) = self.look_at_faces(part, &faces);
+        // The boundary of tetrahedra that meet from opposite sides is a cycle.
+        let is_star = are_cells_sound && is_star_shaped(&part.mesh.points, &faces, &middle(part));
+        let (owners, surfaces) = self.look_at_faces(part, &faces, is_star);
         let enclosed = match surfaces.all.len() {
             // The tetrahedra tell better.
             1 => vec![Enclosed::exactly(self.volume)],
@@ -134,7 +136,7 @@ impl Certificate {
 
     /// Checks a part that has faces only. Each outer surface encloses one component.
     fn look_at_hull(&mut self, part: &PartView, faces: &[[u32; 3]]) {
-        let (owners, surfaces) = self.look_at_faces(part, faces);
+        let (owners, surfaces) = self.look_at_faces(part, faces, false);
         let enclosed = enclosed(&part.mesh.points, faces, &surfaces);
         self.volume = enclosed.iter().map(Enclosed::volume).sum();
         self.components = enclosed.iter().filter(|enclosed| !enclosed.is_cavity()).count() as u32;
@@ -144,14 +146,11 @@ impl Certificate {
     }
 
     /// Checks the boundary faces. Returns the owner and the surface of each.
-    fn look_at_faces(&mut self, part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, Surfaces) {
+    fn look_at_faces(&mut self, part: &PartView, faces: &[[u32; 3]], is_star: bool) -> (Vec<Owner>, Surfaces) {
         let points = &part.mesh.points[..];
         let (owners, labels) = owners(part, faces);
-        let boundary = Boundary::new(points, faces);
-        let (contacts, intersections) = boundary.self_intersections(false, &());
-        self.take(iter::once(labels).chain(boundary.manifold_lines()).chain([contacts]));
-        self.intersections = intersections;
-        self.intersections.truncate(KEPT_INTERSECTIONS);
+        self.take([labels]);
+        let surfaces = if is_star { surfaces(points.len(), faces) } else { self.compare_faces(points, faces) };
         let box_of = Aabb::of_points(faces.as_flattened().iter().map(|&v| &points[v as usize]));
         self.bounds = [box_of.min.coords.into(), box_of.max.coords.into()];
         let sums: Vec<u64> = points.iter().map(point_sum).collect();
@@ -165,7 +164,17 @@ impl Certificate {
                 }
             }
         }
-        (owners, boundary.into_surfaces())
+        (owners, surfaces)
+    }
+
+    /// Compares the boundary faces with each other. Returns the surface of each.
+    fn compare_faces(&mut self, points: &[Point3], faces: &[[u32; 3]]) -> Surfaces {
+        let boundary = Boundary::new(points, faces);
+        let (contacts, intersections) = boundary.self_intersections(false, &());
+        self.take(boundary.manifold_lines().into_iter().chain([contacts]));
+        self.intersections = intersections;
+        self.intersections.truncate(KEPT_INTERSECTIONS);
+        boundary.into_surfaces()
     }
 
     fn hold_surfaces(&mut self, faces: &[[u32; 3]], owners: &[Owner], surfaces: &Surfaces, enclosed: Vec<Enclosed>) {
@@ -257,6 +266,29 @@ impl Certificate {
         };
         self.caps = part.caps.iter().map(hold).collect();
     }
+}
+
+/// Weight of the middle between joints and caps against their axes.
+const PULL: f64 = 0.01;
+
+/// Point near the axes of all joints and caps, and about in the middle between them: the node of a fork.
+fn middle(part: &PartView) -> Point3 {
+    let points = &part.mesh.points;
+    let discs = part.joints.iter().chain(part.caps.iter().map(|(_, faces)| faces));
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vec3::zeros());
+    for disc in discs {
+        let corners = disc.as_flattened().iter().filter_map(|&v| points.get(v as usize));
+        let center = corners.map(|p| p.coords).sum::<Vec3>() / disc.as_flattened().len().max(1) as f64;
+        let area = |face: &[u32; 3]| match face.map(|v| points.get(v as usize)) {
+            [Some(a), Some(b), Some(c)] => (b - a).cross(&(c - a)),
+            _ => Vec3::zeros(),
+        };
+        let axis = disc.iter().map(area).sum::<Vec3>().try_normalize(0.0).unwrap_or_default();
+        let across = Matrix3::identity() * (1.0 + PULL) - axis * axis.transpose();
+        matrix += across;
+        right += across * center;
+    }
+    matrix.try_inverse().map_or_else(Point3::origin, |inverse| Point3::from(inverse * right))
 }
 
 /// As [`cells::opposite_sides`], without saying where not.
