@@ -9,7 +9,6 @@ use anastomesh::testing::{
     BlockParams, Cluster, ClusterId, ClusterMesh, EndKind, EndStyle, PartitionParams, mesh_cluster, partition,
     shared_cells, template_of,
 };
-use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
@@ -31,7 +30,7 @@ fn measure(path: &Path) {
     let (network, _) = clean(&file.skeleton).expect("a sound network");
     let params = PartitionParams { cut_terminals: true, ..PartitionParams::default() };
     let mut clusters = partition(&network, &params).expect("a partition").clusters;
-    let cells = shared_cells(clusters.clone().into_par_iter());
+    let cells = shared_cells(clusters.len() as u32, |i| clusters[i as usize].clone());
     clusters.iter_mut().zip(cells).for_each(|(cluster, cells)| cluster.cells = cells);
     // Canonical forks are kept for a while, so forks of one follow each other.
     clusters.sort_by_key(template_of);

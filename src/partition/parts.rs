@@ -128,10 +128,21 @@ pub enum ForkCells {
     /// No template.
     #[default]
     None,
-    /// Small cells.
-    Fine,
-    /// Large cells, for forks that have few alike.
-    Coarse,
+    /// Small cells. Rank of the cell by its distance from the fork, 0 for the cell that it is in.
+    Fine(u8),
+    /// Large cells, for forks that have few alike, with the rank of the cell.
+    Coarse(u8),
+}
+
+impl ForkCells {
+    /// Number that no other cells have.
+    pub fn number(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Fine(rank) => 1 + 2 * u32::from(rank),
+            Self::Coarse(rank) => 2 + 2 * u32::from(rank),
+        }
+    }
 }
 
 /// End plane of a cluster.

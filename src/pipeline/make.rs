@@ -211,7 +211,7 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Ret
         }
         key.id(end.overrun);
     }
-    key.id(cluster.cells as u32);
+    key.id(cluster.cells.number());
     // Clusters without are found by the keys that they always had.
     for fork in &cluster.fine {
         key.point(&fork.at);

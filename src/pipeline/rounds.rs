@@ -28,7 +28,6 @@ use crate::partition::{self, ClusterId, CutId, Layout};
 use anastomesh_mesh::progress::{Progress, Stage};
 use anastomesh_skeleton::{BranchId, Overlaps};
 use anastomesh_tet::parts::Watch;
-use rayon::prelude::*;
 
 /// Maximum changes of the partition because of blocks that failed, and as many because of clusters that are known to fail.
 const MAX_PARTITION_CHANGES: usize = 6;
@@ -116,8 +115,7 @@ impl RunContext<'_> {
         let kept = || {
             let layout = store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton));
             let layout = layout.sized(plan.size_at.clone());
-            let clusters = (0..layout.clusters_len() as u32).into_par_iter().map(|i| layout.cluster(ClusterId(i)));
-            let cells = shared_cells(clusters);
+            let cells = shared_cells(layout.clusters_len() as u32, |i| layout.cluster(ClusterId(i)));
             Ok(layout.with_cells(cells))
         };
         self.clock.time(progress, Stage::Partition, 0, kept)

@@ -6,8 +6,9 @@
 //! alone, so the result does not depend on the order of forks. If an image has poor tetrahedra that improvement does not mend, the
 //! fork is contoured.
 //!
-//! A canonical fork takes the time of several contoured ones. So only cells that several forks of the network share have one
-//! ([`shared_cells`]). Forks of other cells are looked for in larger cells.
+//! Only cells that several forks of the network are in have a canonical fork ([`shared_cells`]). Other forks are images of
+//! those of the nearest cells. Shapes have twelve coordinates, so a cell has thousands of neighbours, and alike forks are
+//! often in several of them.
 
 mod cache;
 mod canonical;
@@ -27,33 +28,38 @@ use std::hash::BuildHasher;
 
 /// Maximum ρ. Larger canonical forks would take much memory, and more than a second that cannot be cancelled.
 const FINEST: f64 = 6.0;
-/// Minimum number of forks of a cell. A canonical fork takes 2 to 3 times as long as a contoured one.
-const MANY: u32 = 4;
+/// Minimum number of forks in a cell with a canonical fork, which takes about as long as a contoured one.
+const MANY: u32 = 3;
+/// Largest rank of a cell.
+const RANKS: u8 = 24;
 
-/// Cells of the clusters of a network: fine ones where they have many forks, else coarse ones.
-pub fn shared_cells(clusters: impl IndexedParallelIterator<Item = Cluster>) -> Vec<ForkCells> {
-    let of_forks: Vec<[u32; 2]> = clusters.map(|cluster| hashes(&cluster)).collect();
-    let mut cells = vec![ForkCells::None; of_forks.len()];
-    for (i, level) in [ForkCells::Fine, ForkCells::Coarse].into_iter().enumerate() {
-        let open = |(hashes, cell): (&[u32; 2], &ForkCells)| (*cell == ForkCells::None).then_some(hashes[i]);
-        let mut counts: FxHashMap<u32, u32> = FxHashMap::default();
-        for hash in of_forks.iter().zip(&cells).filter_map(open).filter(|hash| *hash != 0) {
-            *counts.entry(hash).or_default() += 1;
+/// Cells of the clusters of a network. Cells that many forks are in are chosen, and each fork has the nearest chosen one:
+/// a fine one, else a coarse one.
+pub fn shared_cells(count: u32, cluster: impl Fn(u32) -> Cluster + Sync) -> Vec<ForkCells> {
+    let mut cells = vec![ForkCells::None; count as usize];
+    for level in [ForkCells::Fine, ForkCells::Coarse] {
+        let open: Vec<u32> = (0..count).filter(|&i| cells[i as usize] == ForkCells::None).collect();
+        let own = |&i: &u32| hash_of(Fork::of(&cluster(i)).and_then(|fork| fork.cell(level(0))));
+        let own: Vec<u32> = open.par_iter().map(own).collect();
+        let mut chosen: FxHashMap<u32, u32> = FxHashMap::default();
+        for hash in own.iter().filter(|hash| **hash != 0) {
+            *chosen.entry(*hash).or_default() += 1;
         }
-        for (hashes, cell) in of_forks.iter().zip(&mut cells) {
-            let is_shared = counts.get(&hashes[i]).is_some_and(|&count| count >= MANY);
-            if *cell == ForkCells::None && is_shared {
-                *cell = level;
+        chosen.retain(|_, count| *count >= MANY);
+        let nearest = |(&i, own): (&u32, &u32)| {
+            if chosen.contains_key(own) {
+                return level(0);
             }
+            let fork = if *own == 0 || chosen.is_empty() { None } else { Fork::of(&cluster(i)) };
+            let is_chosen = |fork: &Fork, cells: ForkCells| chosen.contains_key(&hash_of(fork.cell(cells)));
+            fork.and_then(|fork| (1..=RANKS).map(level).find(|&cells| is_chosen(&fork, cells))).unwrap_or_default()
+        };
+        let nearest: Vec<ForkCells> = open.par_iter().zip(&own).map(nearest).collect();
+        for (i, cell) in open.into_iter().zip(nearest) {
+            cells[i as usize] = cell;
         }
     }
     cells
-}
-
-/// Hashes of the fine and the coarse cell of a fork; 0 for none.
-fn hashes(cluster: &Cluster) -> [u32; 2] {
-    let fork = Fork::of(cluster);
-    [ForkCells::Fine, ForkCells::Coarse].map(|cells| hash_of(fork.as_ref().and_then(|fork| fork.cell(cells))))
 }
 
 fn hash_of(cell: Option<Cell>) -> u32 {

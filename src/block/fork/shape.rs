@@ -53,15 +53,15 @@ pub struct Fork {
     pub limbs: [Limb; 3],
 }
 
-/// Cell of similar forks: sides of the ends, steps of height, azimuths, radii and lengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+/// Number of coordinates of a shape.
+const PLACES: usize = 12;
+
+/// Cell of similar forks: sides of the ends, and steps of the coordinates ([`Fork::places`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
     is_coarse: bool,
     sides: [u8; 3],
-    height: i8,
-    azimuths: [i8; 2],
-    radii: [[i8; 2]; 3],
-    lengths: [i8; 3],
+    steps: [i8; PLACES],
 }
 
 impl Fork {
@@ -104,35 +104,66 @@ impl Fork {
         Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
     }
 
-    /// Cell of the fork among those of a size; `None` if a step is out of range.
-    pub fn cell(&self, cells: ForkCells) -> Option<Cell> {
-        let steps = steps(cells == ForkCells::Coarse);
+    /// Coordinates of the shape in steps of a cell: height, two azimuths, then for each vessel its radius at the node, its
+    /// taper and its length.
+    fn places(&self, steps: Steps) -> Option<[f64; PLACES]> {
         let normal = self.normal()?;
-        let height = normal.dot(&self.limbs[0].axis);
         let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
         let azimuth = |limb: usize| {
             let (x, y) = (across[0].dot(&across[limb]), normal.dot(&across[0].cross(&across[limb])));
-            libm::atan2(y, x)
+            libm::atan2(y, x) / steps.azimuth
         };
-        let step = |x: f64, of: f64| {
-            let step = (x / of).round();
-            (step.abs() <= 100.0).then_some(step as i8)
+        let radius = |[r, of]: [f64; 2]| libm::log(r / of) / steps.radius;
+        let mut places = [0.0; PLACES];
+        places[..3].copy_from_slice(&[normal.dot(&self.limbs[0].axis) / steps.height, azimuth(1), azimuth(2)]);
+        for (limb, places) in self.limbs.iter().zip(places[3..].chunks_mut(3)) {
+            let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / steps.length;
+            let [near, far] = limb.radii;
+            places.copy_from_slice(&[radius([near, self.radius]), radius([far, near]), length]);
+        }
+        Some(places)
+    }
+
+    /// Cell of a fork; `None` if a step is out of range.
+    pub fn cell(&self, cells: ForkCells) -> Option<Cell> {
+        let (is_coarse, rank) = match cells {
+            ForkCells::None => return None,
+            ForkCells::Fine(rank) => (false, rank),
+            ForkCells::Coarse(rank) => (true, rank),
         };
-        let radius = |r: f64| step(libm::log(r / self.radius), steps.radius);
-        let mut cell = Cell {
-            is_coarse: cells == ForkCells::Coarse,
-            sides: self.limbs.map(|limb| limb.side),
-            height: step(height, steps.height)?,
-            azimuths: [step(azimuth(1), steps.azimuth)?, step(azimuth(2), steps.azimuth)?],
-            radii: [[0; 2]; 3],
-            lengths: [0; 3],
-        };
-        for (i, limb) in self.limbs.iter().enumerate() {
-            cell.radii[i] = [radius(limb.radii[0])?, radius(limb.radii[1])?];
-            cell.lengths[i] = step(libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])), steps.length)?;
+        let places = self.places(steps(is_coarse))?;
+        let away = rounded_away(&places, rank);
+        let mut cell = Cell { is_coarse, sides: self.limbs.map(|limb| limb.side), steps: [0; PLACES] };
+        for (i, (step, place)) in cell.steps.iter_mut().zip(places).enumerate() {
+            let nearest = place.round();
+            let next = if place < nearest { nearest - 1.0 } else { nearest + 1.0 };
+            let chosen = if away >> i & 1 == 1 { next } else { nearest };
+            *step = (chosen.abs() <= 100.0).then_some(chosen as i8)?;
         }
         Some(cell)
     }
+}
+
+/// The coordinates, as bits, that are not rounded to the nearest step but to the next one: of all sets of coordinates, the
+/// one of a rank by the sum of the further distances.
+fn rounded_away(places: &[f64; PLACES], rank: u8) -> u16 {
+    let further = |i: usize| (1.0 - 2.0 * (places[i] - places[i].round()).abs(), i);
+    let mut costs: [(f64, usize); PLACES] = std::array::from_fn(further);
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Sets that may be next: sum, the last term, and the terms as bits. Each comes from a set with a smaller sum, with the
+    // next term beside the last one or in its place.
+    let mut open = vec![(costs[0].0, 0, 1_u16)];
+    let mut found = 0;
+    for _ in 0..rank {
+        let Some(least) = (0..open.len()).min_by(|&a, &b| open[a].0.total_cmp(&open[b].0)) else { break };
+        let (sum, last, terms) = open.swap_remove(least);
+        if let Some(&(cost, _)) = costs.get(last + 1) {
+            open.push((sum + cost, last + 1, terms | 1 << (last + 1)));
+            open.push((sum + cost - costs[last].0, last + 1, terms & !(1 << last) | 1 << (last + 1)));
+        }
+        found = terms;
+    }
+    (0..PLACES).filter(|i| found >> i & 1 == 1).fold(0, |bits, i| bits | 1 << costs[i].1)
 }
 
 /// Start and radii of the vessel that ends at a cut, if it is one tube.
@@ -152,15 +183,17 @@ impl Cell {
     /// extension beyond a cut, in radii. `stretch`: factor of all lengths.
     pub fn cluster(&self, overrun: f64, stretch: f64) -> Cluster {
         let steps = steps(self.is_coarse);
-        let radius = |step: i8| libm::exp(steps.radius * f64::from(step));
-        let height = (steps.height * f64::from(self.height)).clamp(-0.9, 0.9);
+        let place = |i: usize| f64::from(self.steps[i]);
+        let height = (steps.height * place(0)).clamp(-0.9, 0.9);
         let across = (1.0 - height * height).sqrt();
         let mut cluster = Cluster::default();
-        for (i, [from, to]) in self.radii.iter().map(|radii| radii.map(radius)).enumerate() {
-            let azimuth = if i == 0 { 0.0 } else { steps.azimuth * f64::from(self.azimuths[i - 1]) };
+        for i in 0..3 {
+            let azimuth = if i == 0 { 0.0 } else { steps.azimuth * place(i) };
             let (y, x) = libm::sincos(azimuth);
             let axis = Vec3::new(across * x, across * y, height);
-            let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * f64::from(self.lengths[i]));
+            let [radius, taper, length] = [0, 1, 2].map(|k| place(3 + 3 * i + k));
+            let [from, to] = [radius, radius + taper].map(|place| libm::exp(steps.radius * place));
+            let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * length);
             let at = Point3::from(axis * length);
             let index = cluster.tubes.len() as u32 + 1;
             cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });

@@ -11,11 +11,10 @@ use anastomesh_mesh::quality::TetQuality;
 use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Watch;
 use nalgebra::Rotation3;
-use rayon::prelude::*;
 
 /// Fork at a node: for each vessel its azimuth in degrees, length and radii at both ends. The first one ends at the node.
 fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [f64; 2]); 3]) -> Cluster {
-    let mut cluster = Cluster { cells: ForkCells::Fine, ..Cluster::default() };
+    let mut cluster = Cluster { cells: ForkCells::Fine(0), ..Cluster::default() };
     let normal = turn * Vec3::z();
     for (i, (azimuth, length, radii)) in (0..).zip(vessels) {
         let (y, x) = libm::sincos(azimuth.to_radians());
@@ -120,12 +119,12 @@ fn images_turn_with_their_forks() {
 fn the_middle_of_a_cell_is_its_own_image() {
     let params = shared();
     let cell = Fork::of(&cluster(Point3::origin(), turned(0.5), 0.0, plain()))
-        .and_then(|fork| fork.cell(ForkCells::Fine))
+        .and_then(|fork| fork.cell(ForkCells::Fine(0)))
         .expect("a cell");
     let canonical = Canonical::of(&cell, &params).expect("a canonical fork");
     let middle = cell.cluster(2.0 * 1.6 / 3.0, 1.0);
     let fork = Fork::of(&middle).expect("a fork");
-    assert_eq!(fork.cell(ForkCells::Fine), Some(cell));
+    assert_eq!(fork.cell(ForkCells::Fine(0)), Some(cell));
     let made = image(&canonical, &fork, &middle, &params).expect("an image");
     for (p, q) in canonical.points.iter().zip(&made.mesh.points) {
         assert!((p - q).norm() < 1e-2, "{p} {q}");
@@ -176,16 +175,31 @@ fn only_forks_with_many_alike_have_a_cell() {
         let cluster = cluster(Point3::origin(), turned(azimuth), 0.0, vessels);
         Cluster { cells: ForkCells::None, ..cluster }
     };
-    // Four in one fine cell, four in two fine cells of one coarse cell, and one alone.
+    // Four in one fine cell; three in another and one beside it; three in three fine cells of one coarse cell; one alone.
     let alike = (0..4).map(|i| fork(122.0 + f64::from(i), 0.95));
-    let similar = [92.0, 94.0, 96.0, 104.0].map(|azimuth| fork(azimuth, 0.5));
-    let clusters: Vec<Cluster> = alike.chain(similar).chain([fork(150.0, 0.2)]).collect();
-    let (fine, coarse) = (ForkCells::Fine, ForkCells::Coarse);
-    let expected = [fine, fine, fine, fine, coarse, coarse, coarse, coarse, ForkCells::None];
-    assert_eq!(shared_cells(clusters.clone().into_par_iter()), expected);
-    assert_eq!(shared_cells(clusters[..3].to_vec().into_par_iter()), [ForkCells::None; 3]);
-    assert!(fork_of(&clusters[0], ForkCells::Fine).is_some() && fork_of(&clusters[0], ForkCells::None).is_none());
-    assert!(fork_of(&clusters[4], ForkCells::Coarse).is_some());
+    let similar = [95.0, 96.0, 104.0, 92.0].map(|azimuth| fork(azimuth, 0.5));
+    let loose = [(92.0, 0.3), (92.0, 0.33), (102.0, 0.3)].map(|(azimuth, radius)| fork(azimuth, radius));
+    let clusters: Vec<Cluster> = alike.chain(similar).chain(loose).chain([fork(150.0, 0.1)]).collect();
+    let cells_of = |count: u32| shared_cells(count, |i| clusters[i as usize].clone());
+    let cells = cells_of(12);
+    assert_eq!(cells[..7], [ForkCells::Fine(0); 7]);
+    assert!(matches!(cells[7], ForkCells::Fine(1..)), "{:?}", cells[7]);
+    assert_eq!(cells[8..11], [ForkCells::Coarse(0); 3]);
+    assert_eq!(cells[11], ForkCells::None);
+    assert_eq!(cells_of(2), [ForkCells::None; 2]);
+    assert!(fork_of(&clusters[0], ForkCells::Fine(0)).is_some() && fork_of(&clusters[0], ForkCells::None).is_none());
+    assert!(fork_of(&clusters[7], cells[7]).is_some());
+}
+
+#[test]
+fn cells_by_rank_are_distinct_and_ever_further() {
+    let fork = Fork::of(&cluster(Point3::origin(), turned(0.5), 0.03, plain())).expect("a fork");
+    let cells: Vec<_> = (0..=255).map(|rank| fork.cell(ForkCells::Fine(rank)).expect("a cell")).collect();
+    let distinct: std::collections::BTreeSet<String> = cells.iter().map(|cell| format!("{cell:?}")).collect();
+    assert_eq!(distinct.len(), cells.len());
+    // The next cell differs in one step.
+    let own = Fork::of(&cells[0].cluster(1.0, 1.0)).and_then(|fork| fork.cell(ForkCells::Fine(0)));
+    assert_eq!(own, Some(cells[0]));
 }
 
 fn fork_of(cluster: &Cluster, cells: ForkCells) -> Option<super::image::FilledFork> {
