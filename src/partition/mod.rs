@@ -33,8 +33,8 @@ pub use summary::{PartitionSummary, UncutCounts};
 
 /// Partitions a skeleton into clusters and connectors (section 3.2.1 of the paper, generalized to graphs with loops).
 ///
-/// The skeleton must be cleaned. Cuts apply to branches, not to edges. Where equations 11 and 12 forbid all cuts between
-/// bifurcations, vessels are cut wherever two discs fit. The result depends only
+/// The skeleton must be cleaned. Cuts apply to branches, not to edges. If equations 11 and 12 forbid all cuts in a
+/// dense region, clusters may be too large. Their branches are then cut wherever two discs fit. The result depends only
 /// on the arguments. Clusters are ordered by their lowest node, cuts by branch and position.
 ///
 /// # Errors
@@ -63,7 +63,7 @@ pub fn lay_out(
     }
     params.eager.extend(large);
     let eager = cut(skeleton, &params, progress)?;
-    Ok(if eager.clusters_len() > usual.clusters_len() { eager } else { usual })
+    Ok(if eager.largest_nodes() < usual.largest_nodes() { eager } else { usual })
 }
 
 fn cut(skeleton: &Arc<Skeleton>, params: &PartitionParams, progress: &dyn Progress) -> Result<Layout, PartitionError> {

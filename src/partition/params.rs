@@ -16,7 +16,7 @@ pub struct PartitionParams {
     pub cuts: CutRules,
     /// Rules for cuts in clusters that would otherwise be too large: little more than space for two discs.
     pub eager_cuts: CutRules,
-    /// Maximum number of nodes per cluster: bifurcations and terminals. Bifurcations alone have templates.
+    /// Maximum number of nodes per cluster.
     pub large: usize,
     /// Branches that follow `eager_cuts`. Branches of clusters above `large` are added.
     pub eager: BTreeSet<BranchId>,
@@ -53,7 +53,7 @@ impl Default for PartitionParams {
             kappa: KAPPA,
             cuts: CutRules::default(),
             eager_cuts: CutRules { node_distance: 1.5, angle_margin: 1.1, room: 1.0, ..CutRules::default() },
-            large: 1,
+            large: 150,
             eager: BTreeSet::new(),
             overrun: 1.0,
             overrun_voxels: 1.6,

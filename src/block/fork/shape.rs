@@ -104,8 +104,8 @@ impl Fork {
         Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
     }
 
-    /// Coordinates of the shape in steps of a cell: height, two azimuths, then for each vessel its radius at the node, its
-    /// taper and its length.
+    /// Coordinates of the shape in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
+    /// vessel.
     fn places(&self, steps: Steps) -> Option<[f64; PLACES]> {
         let normal = self.normal()?;
         let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
@@ -144,8 +144,8 @@ impl Fork {
     }
 }
 
-/// The coordinates, as bits, that are not rounded to the nearest step but to the next one: of all sets of coordinates, the
-/// one of a rank by the sum of the further distances.
+/// Set of coordinates, as bits, that are rounded to the next step instead of the nearest one. Sets are ranked by the sum of
+/// the further distances.
 fn rounded_away(places: &[f64; PLACES], rank: u8) -> u16 {
     let further = |i: usize| (1.0 - 2.0 * (places[i] - places[i].round()).abs(), i);
     let mut costs: [(f64, usize); PLACES] = std::array::from_fn(further);

@@ -34,7 +34,7 @@ fn faces_towards<'a>(target: &Point3, centre: &Point3, faces: impl Iterator<Item
     // A face in the direction of the ray has a vertex on its side.
     let is_ahead = |p: &Point3| {
         let to = p - centre;
-        !(ray.dot(&to) < BEHIND * length * to.norm())
+        ray.dot(&to) >= BEHIND * length * to.norm()
     };
     let mut count = 0;
     for [a, b, c] in faces.filter(|face| face.iter().any(|p| is_ahead(p))) {
@@ -82,7 +82,7 @@ mod tests {
     }
 
     proptest! {
-        /// What is proved agrees with the test of all pairs of faces.
+        /// The proof agrees with the test of all pairs of faces.
         #[test]
         fn star_shaped_surfaces_have_no_contacts(
             factors in prop::collection::vec(0.2..2.0_f64, 42),
