@@ -7,7 +7,7 @@ use crate::report::{Condition as C, Ids, Report};
 use std::collections::HashMap;
 
 /// Name of the region to which the expectation of a file applies.
-const LUMEN: &str = "lumen";
+pub const LUMEN: &str = "lumen";
 /// Beginning of the names of interface patches.
 const INTERFACE: &str = "interface_";
 

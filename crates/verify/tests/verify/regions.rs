@@ -1,7 +1,7 @@
 //! Meshes with regions: a channel within a wall.
 
 use super::common::lattice;
-use anastomesh_verify::{Demands, Mesh, verify};
+use anastomesh_verify::{Cap, Demands, Mesh, verify};
 use std::collections::BTreeMap;
 
 const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -69,6 +69,21 @@ fn the_expectation_is_that_of_the_lumen() {
         (m.regions[0].1, m.regions[1].1) = ("lumen".into(), "wall".into());
     });
     assert_eq!(names, ["loops"]);
+}
+
+/// Without the lumen, its caps bound the tissue, which is on their other side.
+#[test]
+fn caps_are_those_of_the_lumen() {
+    let inwards = |m: &mut Mesh| {
+        let (center, normal, radius) = ([1.5, 1.5, 0.0], [0.0, 0.0, 1.0], (1.0 / std::f64::consts::PI).sqrt());
+        m.caps.push(Cap { patch: 2, node: 0, center, normal, radius });
+    };
+    assert_eq!(broken(inwards), ["cap_normal"]);
+    let without_lumen = |m: &mut Mesh| {
+        inwards(m);
+        m.regions[0].1 = "tissue".into();
+    };
+    assert_eq!(broken(without_lumen), [""; 0]);
 }
 
 #[test]
