@@ -212,3 +212,28 @@ impl Cell {
 fn steps(is_coarse: bool) -> Steps {
     if is_coarse { COARSE } else { FINE }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_ranked_by_distance() {
+        let places: [f64; PLACES] = std::array::from_fn(|i| 0.37 * i as f64 - 2.0);
+        let further = |bits: u16| -> f64 {
+            let cost = |i: usize| 1.0 - 2.0 * (places[i] - places[i].round()).abs();
+            (0..PLACES).filter(|i| bits >> i & 1 == 1).map(cost).sum()
+        };
+        let found: Vec<u16> = (0..=255).map(|rank| rounded_away(&places, rank)).collect();
+        // No set that is missing has a smaller distance than the last one.
+        let mut nearest: Vec<f64> = (0..1 << PLACES).map(further).collect();
+        nearest.sort_by(f64::total_cmp);
+        for (bits, distance) in found.iter().zip(nearest) {
+            assert!((further(*bits) - distance).abs() < 1e-9, "{bits:b}");
+        }
+        let mut distinct = found.clone();
+        distinct.sort_unstable();
+        distinct.dedup();
+        assert_eq!((distinct.len(), found[0]), (found.len(), 0));
+    }
+}

@@ -191,17 +191,6 @@ fn only_forks_with_many_alike_have_a_cell() {
     assert!(fork_of(&clusters[7], cells[7]).is_some());
 }
 
-#[test]
-fn cells_by_rank_are_distinct_and_ever_further() {
-    let fork = Fork::of(&cluster(Point3::origin(), turned(0.5), 0.03, plain())).expect("a fork");
-    let cells: Vec<_> = (0..=255).map(|rank| fork.cell(ForkCells::Fine(rank)).expect("a cell")).collect();
-    let distinct: std::collections::BTreeSet<String> = cells.iter().map(|cell| format!("{cell:?}")).collect();
-    assert_eq!(distinct.len(), cells.len());
-    // The next cell differs in one step.
-    let own = Fork::of(&cells[0].cluster(1.0, 1.0)).and_then(|fork| fork.cell(ForkCells::Fine(0)));
-    assert_eq!(own, Some(cells[0]));
-}
-
 fn fork_of(cluster: &Cluster, cells: ForkCells) -> Option<super::image::FilledFork> {
     fork(&Cluster { cells, ..cluster.clone() }, &shared())
 }
