@@ -3,7 +3,7 @@
 //! Let the faces be a cycle: as many run along an edge in one direction as in the other. Seen from a centre, let all of them
 //! turn the same way. Then the number of faces in a direction is the same for all directions outside of edges. If it is
 //! 1, the faces meet only at common edges and vertices. Each edge has two faces, and the faces of each vertex are one fan.
-//! The surface is a sphere (Preparata and Shamos 1985, section 1.2.3, on kernels). All signs are exact.
+//! The surface is a sphere, and the centre is in its kernel. All signs are exact.
 
 use super::predicates::{in_exact_range, orient3d};
 use super::{Point3, Vec3};
