@@ -32,6 +32,8 @@ pub(super) struct CutFinder<'a> {
 
 /// Minimum piece length between two cuts of a branch, in radii.
 const SHORTEST_PIECE: f64 = 4.0;
+/// Length of a connector between such cuts, relative to the minimum length.
+const REASONABLE: f64 = 4.0;
 
 impl<'a> CutFinder<'a> {
     pub fn new(
@@ -91,7 +93,7 @@ impl<'a> CutFinder<'a> {
         while let Some((lo, hi, piece_lo, piece_hi)) = pending.pop() {
             let clipped = parts.iter().map(|p| [p[0].max(lo), p[1].min(hi)]);
             // The first cut needs only the minimum space, further cuts a connector of reasonable length.
-            let least = if piece_lo > 0.0 || piece_hi < course.length() { 2.0 } else { 1.0 };
+            let least = if piece_lo > 0.0 || piece_hi < course.length() { REASONABLE } else { 1.0 };
             let rules = self.params.rules(branch);
             let fits = |p: &[f64; 2]| rules.fits(course, *p, least);
             let best = clipped.filter(fits).reduce(|a, b| {

@@ -1,5 +1,6 @@
 //! Canonical fork of a cell: contoured and filled as other clusters are, then optimized.
 
+use super::crotch::crotches;
 use super::shape::{Cell, Fork, TIP};
 use crate::block::contoured::{ClusterMesh, contoured};
 use crate::block::params::{BlockParams, EndStyle};
@@ -30,6 +31,8 @@ pub struct Canonical {
     pub wall: Vec<[u32; 3]>,
     /// Vertices of the wall, but for those on discs at cuts.
     pub levels: Vec<Level>,
+    /// Crotch between each two limbs, at the index of the third.
+    pub crotches: [Option<Point3>; 3],
     /// Topology of the tetrahedra, with the discs.
     pub topology: Arc<Topology>,
 }
@@ -71,6 +74,7 @@ impl Canonical {
         free.sort_unstable();
         free.dedup();
         let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
+        let crotches = crotches(&fork, &mut field);
         let mut level =
             |v: u32| Level { vertex: v, value: field.value(&mesh.points[v as usize]), rim: limb_of.get(&v).copied() };
         let levels =
@@ -85,6 +89,7 @@ impl Canonical {
             discs,
             wall,
             levels,
+            crotches,
             topology: Arc::new(topology),
         })
     }

@@ -1,6 +1,7 @@
 //! Image of a canonical fork.
 
 use super::canonical::Canonical;
+use super::crotch::{Shifts, crotches};
 use super::shape::{Fork, Limb, TIP};
 use crate::block::hull::{Triangles, hull};
 use crate::block::layered::disc_at_end;
@@ -51,7 +52,10 @@ impl FilledFork {
 
 /// Returns the image; `None` if it does not fit or has poor tetrahedra.
 pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &BlockParams) -> Option<FilledFork> {
-    let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p, &canonical.fork, fork)).collect();
+    let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
+    let moved = |p: &Point3| moved(p, &canonical.fork, fork);
+    let shifts = Shifts::new(&canonical.fork, [canonical.crotches, crotches(fork, &mut field)], moved);
+    let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p) + shifts.at(p)).collect();
     let mut discs: [Triangles; 3] = Default::default();
     for (i, limb) in fork.limbs.iter().enumerate() {
         discs[limb.end as usize].clone_from(&canonical.discs[i]);
@@ -70,7 +74,6 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
             points[v as usize] = *p;
         }
     }
-    let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
     for level in &canonical.levels {
         let p = &mut points[level.vertex as usize];
         let plane = level.rim.map(|limb| fork.limbs[limb].axis);
