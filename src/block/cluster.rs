@@ -9,9 +9,14 @@ use super::params::BlockParams;
 use super::topology::Topology;
 use crate::partition::{Cluster, ClusterId, EndKind};
 use crate::surface::CappedSurface;
+use anastomesh_mesh::quality::tet_ratio;
 use anastomesh_mesh::{TetMesh, TriMesh};
 use anastomesh_tet::parts::Watch;
 use std::sync::Arc;
+
+/// Minimum radius ratio of tetrahedra with layers in the wall of a template, relative to the median. Such forks are
+/// contoured otherwise.
+const FAIR: f64 = 0.25;
 
 /// Meshes one cluster.
 ///
@@ -34,8 +39,9 @@ pub(crate) fn mesh_cluster_watched(
     params.check()?;
     if params.layers.is_some()
         && let Some(wall) = wall_of_fork(cluster, params)
+        && let Some(made) = filled(id, cluster, wall, params, watch).ok().filter(has_fair_layers)
     {
-        return filled(id, cluster, wall, params, watch);
+        return Ok(made);
     }
     let image = if let Some(tube) = lone_tube(cluster, params) {
         let triangles = tube.ends[0].len() + tube.ends[1].len() + tube.wall.len();
@@ -51,6 +57,15 @@ pub(crate) fn mesh_cluster_watched(
         return contoured(id, cluster, params, watch);
     };
     image.finished(id, cluster, params)
+}
+
+/// True if no tetrahedron is far flatter than most, as where the sides of layers nearly meet.
+fn has_fair_layers(made: &ClusterMesh) -> bool {
+    let TetMesh { points, tets } = &made.mesh;
+    let mut ratios: Vec<f64> = tets.iter().map(|t| tet_ratio(&t.map(|v| points[v as usize]))).collect();
+    let middle = ratios.len() / 2;
+    let least = ratios.iter().copied().fold(1.0, f64::min);
+    !ratios.is_empty() && least >= FAIR * *ratios.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Wall of a fork by template, within which layers are made. It is the same as without layers.

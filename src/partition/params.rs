@@ -5,9 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use anastomesh_skeleton::{BranchId, CutRules, EdgeId, NodeId, SizeField, Skeleton};
 
-/// Minimum length of a connector. Refinement makes twice that room, so planes can be moved.
-const SHORTEST_CONNECTOR: f64 = 1.0;
-
 /// Parameters of the partition. Lengths are in radii of the respective vessel unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartitionParams {
@@ -54,14 +51,9 @@ impl Default for PartitionParams {
         Self {
             rho: RHO,
             kappa: KAPPA,
-            cuts: CutRules { room: SHORTEST_CONNECTOR, ..CutRules::default() },
-            eager_cuts: CutRules {
-                node_distance: 1.5,
-                angle_margin: 1.1,
-                room: SHORTEST_CONNECTOR,
-                ..CutRules::default()
-            },
-            large: 150,
+            cuts: CutRules::default(),
+            eager_cuts: CutRules { node_distance: 1.5, angle_margin: 1.1, ..CutRules::default() },
+            large: 100,
             eager: BTreeSet::new(),
             overrun: 1.0,
             overrun_voxels: 1.6,

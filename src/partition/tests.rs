@@ -95,9 +95,9 @@ fn an_h_is_cut_in_its_middle() {
 
 #[test]
 fn length_decides() {
-    // Minimum: 2 × 2.2 plus 2 for the connector.
-    assert_eq!(default_cut(&h_shape(6.5)).cuts.len(), 1);
-    let p = default_cut(&h_shape(6.3));
+    // Minimum: 2 × 2.2 plus 1 for the connector.
+    assert_eq!(default_cut(&h_shape(5.5)).cuts.len(), 1);
+    let p = default_cut(&h_shape(5.3));
     assert_eq!((p.cuts.len(), only_reason(&p, 0)), (0, Some(UncutReason::Length)));
 }
 
@@ -122,7 +122,7 @@ fn acute_angles_need_length() {
     let p = default_cut(&acute(30.0, 16.0));
     // 1.25 (1 / sin 30° + 1 / tan 30°) = 4.67; the clear zone starts half a radius before the plane: 4.87.
     assert!(p.cut_arcs[0][0] > 4.87 && p.cut_arcs[0][0] < 5.1, "{:?}", p.cut_arcs);
-    let p = default_cut(&acute(15.0, 13.0));
+    let p = default_cut(&acute(15.0, 12.0));
     assert_eq!((p.cuts.len(), only_reason(&p, 1)), (0, Some(UncutReason::Angle)));
     // The angle itself counts, not its supplement: an arm straight back is ignored.
     let p = default_cut(&acute(100.0, 12.0));
@@ -303,7 +303,7 @@ fn callers_move_and_forbid_cuts() {
     let [lo, hi] = shifted(0.5);
     assert!(lo > 4.0 && (hi - 9.8).abs() < 1e-9);
     let [lo, hi] = shifted(-1.0);
-    assert!((lo - 2.2).abs() < 1e-9 && (hi - 4.2).abs() < 1e-9);
+    assert!((lo - 2.2).abs() < 1e-9 && (hi - 3.2).abs() < 1e-9);
     assert_eq!(shifted(f64::NAN), shifted(0.0));
     let params = PartitionParams { forbidden_cuts: [BranchId(0)].into(), ..PartitionParams::default() };
     assert_eq!(cut_up(&s, &params).clusters.len(), 1);

@@ -16,7 +16,7 @@ pub const CUT_DISTANCE: f64 = 2.2;
 pub const ANGLE_MARGIN: f64 = 1.25;
 
 /// Minimum length of a connector between its two planes, in radii.
-pub const CONNECTOR_ROOM: f64 = 2.0;
+pub const CONNECTOR_ROOM: f64 = 1.0;
 
 /// Fraction of equation 11's distance in radii of the vessel itself; the rest is in those of its neighbours.
 const OWN_SHARE: f64 = 0.6;

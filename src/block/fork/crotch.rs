@@ -1,7 +1,7 @@
 //! Crotches of a fork: where the walls of two vessels meet, in the plane of their axes.
 //!
-//! Where two vessels form a small angle, their crotch is far from the node, and a few degrees move it by a good part of a
-//! radius. The mean of the vessels' own movements does not follow it, so the points near it have a displacement of their own.
+//! At small angles the crotch is far from the node, and a few degrees move it by a good part of a radius. The mean of the
+//! vessels' own movements does not follow it, so the points near it have a displacement of their own.
 
 use super::shape::{Fork, Limb};
 use crate::surface::Field;

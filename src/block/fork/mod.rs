@@ -1,11 +1,10 @@
 //! Forks by template: a bifurcation of three straight vessels, up to cuts or terminals, is the image of a canonical fork.
 //!
 //! Shapes are divided into cells of angles, radii and lengths. A canonical fork ([`canonical`]) is contoured and filled once
-//! per cell. The map to a fork of the cell ([`image`]) moves its points with the three vessels and with the places where two of
-//! them meet ([`crotch`]). Those of the wall then move onto
-//! the level set of the fork's own field. Discs at cuts are taken over bit for bit. A canonical fork depends on its cell
-//! alone, so the result does not depend on the order of forks. If an image has poor tetrahedra that improvement does not mend, the
-//! fork is contoured.
+//! per cell. The map to a fork of the cell ([`image`]) moves its points with the three vessels and their crotches
+//! ([`crotch`]). Those of the wall then move onto the level set of the fork's own field. Discs at cuts are taken over bit for
+//! bit. A canonical fork depends on its cell alone, so the result does not depend on the order of forks. If an image has poor
+//! tetrahedra that improvement does not mend, the fork is contoured.
 //!
 //! Only cells that several forks of the network are in have a canonical fork ([`shared_cells`]). Other forks are images of
 //! those of the nearest cells. Shapes have twelve coordinates, so a cell has thousands of neighbours, and alike forks are

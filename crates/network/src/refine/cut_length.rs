@@ -55,10 +55,10 @@ fn needed(frame: &Frame, chain: &Chain, gradient: &mut Vec<(NodeId, Vec3)>) -> O
     }
     let by_11 = CUT_DISTANCE * (radii[0] + radii[1]);
     let inner = ends.map(|n| frame.adjacency.valence(n) > 2);
-    // Between junctions a connector of 2 r, at a terminal a piece of r with its cap.
+    // Twice the room of a connector, as its planes may have to move. At a terminal, half of that is a piece with its cap.
     let mut cut = 0.0;
     for i in [0, 1] {
-        cut += 0.5 * CONNECTOR_ROOM * radii[i];
+        cut += CONNECTOR_ROOM * radii[i];
         if inner[i] {
             cut += distance(frame, ends[i], own[i], gradient);
         }
