@@ -5,6 +5,7 @@
 
 use std::borrow::Cow;
 use std::io;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -229,13 +230,17 @@ impl dyn MeshSource + '_ {
         mut each: impl FnMut(T) -> io::Result<()>,
     ) -> io::Result<()> {
         for first in (0..self.parts()).step_by(MAX_HELD_PARTS as usize) {
-            let parts = first..self.parts().min(first + MAX_HELD_PARTS);
-            for piece in parts.into_par_iter().map(&read).collect::<Vec<_>>() {
+            for piece in read_parts(first..self.parts().min(first + MAX_HELD_PARTS), &read) {
                 each(piece?)?;
             }
         }
         Ok(())
     }
+}
+
+/// Reads parts on all threads. Compiled once for each `T`, whoever reads.
+fn read_parts<T: Send>(parts: Range<u32>, read: &(dyn Fn(u32) -> io::Result<T> + Sync)) -> Vec<io::Result<T>> {
+    parts.into_par_iter().map(read).collect()
 }
 
 /// Maximum number of parts in memory at a time.

@@ -141,17 +141,21 @@ impl<'a> Blocks<'a> {
 }
 
 fn lay_out<const W: usize>(room: &mut [u8], item: impl Fn(usize) -> [u8; W] + Sync) {
-    let fill = |first: usize, part: &mut [u8]| {
+    on_all_threads(room, W, &|first, part| {
         let (items, _) = part.as_chunks_mut::<W>();
         for (i, bytes) in items.iter_mut().enumerate() {
             *bytes = item(first + i);
         }
-    };
+    });
+}
+
+/// Fills items of `width` bytes; `fill` receives the first item of its bytes. Compiled once for all arrays.
+fn on_all_threads(room: &mut [u8], width: usize, fill: &(dyn Fn(usize, &mut [u8]) + Sync)) {
     if room.len() <= SERIAL {
         return fill(0, room);
     }
-    let part = SERIAL / W;
-    room.par_chunks_mut(part * W).enumerate().for_each(|(k, bytes)| fill(k * part, bytes));
+    let part = SERIAL / width;
+    room.par_chunks_mut(part * width).enumerate().for_each(|(k, bytes)| fill(k * part, bytes));
 }
 
 fn compress(raw: &[u8], level: Compression) -> io::Result<Vec<u8>> {

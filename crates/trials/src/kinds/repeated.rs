@@ -1,4 +1,4 @@
-//! Kinds of networks that `tests/nasty_networks.rs` runs, too.
+//! Kinds of networks that `tests/library/nasty_networks.rs` runs, too.
 
 use super::make::MakeNetwork;
 use crate::network::Network;
