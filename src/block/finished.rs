@@ -157,14 +157,15 @@ impl Finished {
         let caps: Vec<_> = self.caps.iter().map(cap).collect();
         let view = PartView { mesh: &self.mesh, joints: &joints, caps: &caps };
         debug_assert!(
-            !self.hull.is_empty() || topology.adjacency == tet_adjacency(&self.mesh.tets, self.mesh.points.len()),
+            !self.hull.is_empty() || *topology.adjacency == tet_adjacency(&self.mesh.tets, self.mesh.points.len()),
             "the topology is that of a template with other tetrahedra"
         );
-        self.certificate = if self.hull.is_empty() {
-            certify_with(&view, || &topology.adjacency)
-        } else {
-            certify_hollow(&view, &self.hull)
-        };
+        self.certificate =
+            if self.hull.is_empty() { topology.certify(&view) } else { certify_hollow(&view, &self.hull) };
+        debug_assert!(
+            !self.hull.is_empty() || self.certificate == certify_with(&view, || &*topology.adjacency),
+            "the certificate of an image is that of any block"
+        );
         self
     }
 

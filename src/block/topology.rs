@@ -2,9 +2,10 @@
 
 use super::error::NotOnBoundary;
 use anastomesh_mesh::adjacency::{TetAdjacency, face_vertices, tet_adjacency};
+use anastomesh_mesh::check::parts::{Certificate, PartView, certify_image, certify_with};
 use anastomesh_mesh::{TetMesh, face_key};
 use rustc_hash::FxHashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Disc between two blocks, as seen by one of them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,14 +17,27 @@ pub struct FinishedJoint {
 }
 
 /// Adjacency of tetrahedra, and the faces of their boundary: handles `4 · tet + i` in ascending order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 pub struct Topology {
     /// Face neighbours.
-    pub adjacency: TetAdjacency,
+    pub adjacency: Arc<TetAdjacency>,
     /// Discs at the ends of the block, in their order.
     pub discs: Vec<FinishedJoint>,
     /// Other faces of the boundary.
     pub wall: Vec<u32>,
+    /// Certificate of the first image.
+    certificate: OnceLock<Certificate>,
+    /// Topologies with other orders of two or three discs, at their [`place`].
+    others: [OnceLock<Arc<Topology>>; 6],
+}
+
+/// Place of an order of two or three discs in a list of all orders.
+fn place(order: &[usize]) -> Option<usize> {
+    match *order {
+        [first, _] => Some(first),
+        [first, second, third] => Some(2 * first + usize::from(second > third)),
+        _ => None,
+    }
 }
 
 impl Topology {
@@ -32,10 +46,10 @@ impl Topology {
     /// # Errors
     /// A triangle is not on the boundary.
     pub fn of<'a>(mesh: &TetMesh, discs: impl IntoIterator<Item = &'a [[u32; 3]]>) -> Result<Self, NotOnBoundary> {
-        let adjacency = tet_adjacency(&mesh.tets, mesh.points.len());
+        let adjacency = Arc::new(tet_adjacency(&mesh.tets, mesh.points.len()));
         let mut faces = Faces::new(adjacency.boundary().map(|face| (face, face_vertices(&mesh.tets, face))));
         let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
-        Ok(Self { adjacency, discs, wall: faces.rest() })
+        Ok(Self { adjacency, discs, wall: faces.rest(), ..Self::default() })
     }
 
     /// Topology of a closed surface with these discs. Faces are indices of triangles, and there is no adjacency.
@@ -48,7 +62,7 @@ impl Topology {
     ) -> Result<Self, NotOnBoundary> {
         let mut faces = Faces::new((0..).zip(hull.iter().copied()));
         let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
-        Ok(Self { adjacency: TetAdjacency::default(), discs, wall: faces.rest() })
+        Ok(Self { discs, wall: faces.rest(), ..Self::default() })
     }
 
     /// Topology with its discs in another order.
@@ -56,8 +70,31 @@ impl Topology {
         if order.is_sorted() {
             return Arc::clone(self);
         }
-        let discs = order.iter().map(|&disc| self.discs[disc].clone()).collect();
-        Arc::new(Self { adjacency: self.adjacency.clone(), discs, wall: self.wall.clone() })
+        let make = || {
+            let discs = order.iter().map(|&disc| self.discs[disc].clone()).collect();
+            let adjacency = Arc::clone(&self.adjacency);
+            Arc::new(Self { adjacency, discs, wall: self.wall.clone(), ..Self::default() })
+        };
+        let kept = place(order).and_then(|place| self.others.get(place));
+        kept.map_or_else(make, |kept| Arc::clone(kept.get_or_init(make)))
+    }
+
+    /// Certificate of a block with this topology. Images of a template after the first one have part of it in common.
+    pub fn certify(&self, part: &PartView) -> Certificate {
+        let faces = self.wall.iter().map(|&face| face_vertices(&part.mesh.tets, face));
+        let image = self.certificate.get().and_then(|like| certify_image(part, &faces.collect::<Vec<_>>(), like));
+        image.unwrap_or_else(|| {
+            let certificate = certify_with(part, || &*self.adjacency);
+            self.certificate.get_or_init(|| certificate.clone());
+            certificate
+        })
+    }
+}
+
+/// What is kept for other images is not compared.
+impl PartialEq for Topology {
+    fn eq(&self, other: &Self) -> bool {
+        self.adjacency == other.adjacency && self.discs == other.discs && self.wall == other.wall
     }
 }
 

@@ -25,6 +25,13 @@ pub fn radius_ratio(a: &Point3, b: &Point3, c: &Point3, d: &Point3) -> f64 {
     Spokes::new([a, b, c, d]).radius_ratio()
 }
 
+/// True if the radius ratio of a tetrahedron is at least `least`, which is not negative. Without roots in most cases.
+#[inline]
+pub fn has_ratio([a, b, c, d]: [&Point3; 4], least: f64) -> bool {
+    let spokes = Spokes::new([a, b, c, d]);
+    spokes.has_ratio(least) || spokes.radius_ratio() >= least
+}
+
 /// Common terms of orientation, ratio and angles of a tetrahedron: the edges from the first vertex and their products.
 pub(crate) struct Spokes<'a> {
     corners: [&'a Point3; 4],
@@ -51,6 +58,18 @@ impl<'a> Spokes<'a> {
         let largest = |i: usize| u[i].max(v[i]).max(w[i]);
         let [a, b, c, d] = self.corners;
         self.volume > ORIENT3D_BOUND * largest(0) * largest(1) * largest(2) || orient3d(a, b, c, d) > 0.0
+    }
+
+    /// True only if the radius ratio is at least `least`. The sum of four areas is at most twice the root of the sum of
+    /// their squares.
+    #[inline]
+    fn has_ratio(&self, least: f64) -> bool {
+        let ([u, v, w], [vw, wu, uv]) = (&self.edges, &self.crossed);
+        let squares = vw.norm_squared() + wu.norm_squared() + uv.norm_squared() + (vw + wu + uv).norm_squared();
+        let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
+        let (square, bound) = (self.volume * self.volume, 2.0 * least * (1.0 + 1e-12));
+        let (square, other) = (36.0 * square * square, bound * bound * squares * center.norm_squared());
+        self.volume > 0.0 && other >= f64::MIN_POSITIVE && (other..f64::INFINITY).contains(&square)
     }
 
     #[inline]
@@ -402,6 +421,16 @@ mod tests {
         let expected = libm::acos(1.0_f64 / 3.0);
         for angle in dihedral_angles([&a, &b, &c, &d]) {
             assert!((angle - expected).abs() < 1e-14);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn ratios_are_compared_as_they_are_computed(
+            x in prop::array::uniform4(prop::array::uniform3(-1.0..1.0_f64)), least in 0.0..0.95_f64, unit in -60..60_i32,
+        ) {
+            let [a, b, c, d] = x.map(|p| Point3::from(p.map(|x| x * 10.0_f64.powi(unit))));
+            prop_assert_eq!(has_ratio([&a, &b, &c, &d], least), radius_ratio(&a, &b, &c, &d) >= least);
         }
     }
 

@@ -11,7 +11,7 @@ use crate::partition::Cluster;
 use crate::surface::Field;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::quality::{dihedral_range, radius_ratio};
+use anastomesh_mesh::quality::{dihedral_range, has_ratio};
 use anastomesh_tet::Effort;
 use anastomesh_tet::parts::{OptimizeOptions, optimize};
 use std::sync::Arc;
@@ -149,8 +149,7 @@ fn at_level(field: &mut Field, start: Point3, level: f64, plane: Option<Vec3>, f
 /// True if no tetrahedron has a smaller radius ratio or, in degrees, a smaller dihedral angle.
 fn is_above(mesh: &TetMesh, least: f64, angle: f64) -> bool {
     mesh.tets.iter().all(|t| {
-        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
-        let ratio = radius_ratio(a, b, c, d);
-        ratio >= least && (ratio >= ANGULAR || dihedral_range([a, b, c, d]).0.to_degrees() >= angle)
+        let corners = t.map(|v| &mesh.points[v as usize]);
+        has_ratio(corners, ANGULAR) || (has_ratio(corners, least) && dihedral_range(corners).0.to_degrees() >= angle)
     })
 }

@@ -1,7 +1,8 @@
 //! Topology of a tube of several templates.
 
 use crate::block::topology::{FinishedJoint, Topology};
-use anastomesh_mesh::adjacency::NONE;
+use anastomesh_mesh::adjacency::{NONE, TetAdjacency};
+use std::sync::Arc;
 
 /// Piece of a tube.
 pub struct Part<'a> {
@@ -12,16 +13,16 @@ pub struct Part<'a> {
 
 /// Joins pieces at their discs. Vertices of the outer discs have the same numbers in the tube and in the pieces.
 pub fn joined<'a>(parts: impl Iterator<Item = Part<'a>>) -> Topology {
-    let mut out = Topology::default();
+    let (mut out, mut adjacency) = (Topology::default(), TetAdjacency::default());
     // Faces of the last disc so far.
     let mut open: Vec<u32> = Vec::new();
     for Part { topology, interface: [first, second] } in parts {
-        let base = 4 * out.adjacency.neighbors.len() as u32;
+        let base = 4 * adjacency.neighbors.len() as u32;
         let moved = |face: &u32| if *face == NONE { NONE } else { face + base };
-        out.adjacency.neighbors.extend(topology.adjacency.neighbors.iter().map(|row| row.each_ref().map(moved)));
-        out.adjacency.crowded.extend(topology.adjacency.crowded.iter().map(moved));
+        adjacency.neighbors.extend(topology.adjacency.neighbors.iter().map(|row| row.each_ref().map(moved)));
+        adjacency.crowded.extend(topology.adjacency.crowded.iter().map(moved));
         out.wall.extend(topology.wall.iter().map(moved));
-        let neighbors = out.adjacency.neighbors.as_flattened_mut();
+        let neighbors = adjacency.neighbors.as_flattened_mut();
         for (&a, b) in open.iter().zip(first.iter().map(moved)) {
             neighbors[a as usize] = b;
             neighbors[b as usize] = a;
@@ -34,5 +35,6 @@ pub fn joined<'a>(parts: impl Iterator<Item = Part<'a>>) -> Topology {
         let FinishedJoint { vertices, faces } = &topology.discs[1];
         out.discs.push(FinishedJoint { vertices: vertices.clone(), faces: faces.iter().map(moved).collect() });
     }
+    out.adjacency = Arc::new(adjacency);
     out
 }

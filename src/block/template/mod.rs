@@ -18,7 +18,7 @@ use super::topology::Topology;
 use crate::surface::SharedDisc;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
-use anastomesh_mesh::quality::radius_ratio;
+use anastomesh_mesh::quality::has_ratio;
 use canonical::Template;
 use joined::{Part, joined};
 use std::f64::consts::TAU;
@@ -138,7 +138,9 @@ impl TemplateImage<'_> {
             list.iter().map(|t| t.map(|v| self.number(piece, v))).collect()
         };
         let tets = |piece: u32| self.template(piece).tets.iter().map(move |t| t.map(|v| self.number(piece, v)));
-        let mesh = TetMesh { points: self.points(), tets: (0..pieces).flat_map(tets).collect() };
+        // A single piece has the numbers of its template.
+        let tets = if pieces == 1 { first.tets.clone() } else { (0..pieces).flat_map(tets).collect() };
+        let mesh = TetMesh { points: self.points(), tets };
         self.is_good(&mesh).then(|| FilledTube {
             disc: first.disc,
             ends: [numbers(&first.ends[0], 0), numbers(&last.ends[1], pieces - 1)],
@@ -224,8 +226,8 @@ impl TemplateImage<'_> {
         });
         mesh.tets.iter().zip(bounds).all(|(t, bound)| {
             let corners = t.map(|v| mesh.points[v as usize]);
-            let [a, b, c, d] = if self.stretch > 1.0 { shrunk(&corners) } else { corners };
-            radius_ratio(&a, &b, &c, &d) >= bound
+            let corners = if self.stretch > 1.0 { shrunk(&corners) } else { corners };
+            has_ratio(corners.each_ref(), bound)
         })
     }
 }

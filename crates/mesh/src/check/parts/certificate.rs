@@ -13,7 +13,7 @@ use crate::check::surfaces::{Surface, Surfaces, surfaces};
 use crate::face_key;
 use crate::geometry::predicates::in_exact_range;
 use crate::geometry::{Aabb, DisjointSets, Point3, Vec3, is_star_shaped};
-use crate::quality::{QualitySum, Spokes};
+use crate::quality::{QualityPiece, QualitySum, Spokes};
 use nalgebra::Matrix3;
 use std::borrow::Borrow;
 
@@ -80,9 +80,38 @@ pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
 }
 
 fn has_sound_arrays(mesh: &TetMesh) -> bool {
-    let count = mesh.points.len();
+    has_sound_points(mesh) && mesh.tets.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len())
+}
+
+pub(super) fn has_sound_points(mesh: &TetMesh) -> bool {
     mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
-        && mesh.tets.as_flattened().iter().all(|&v| (v as usize) < count)
+}
+
+/// Whether all tetrahedra are positive, their volume and their quality. `meet` receives each vertex.
+pub(super) fn measured(mesh: &TetMesh, mut meet: impl FnMut(u32)) -> (bool, f64, QualityPiece) {
+    let (mut are_positive, mut volume, mut quality) = (true, 0.0, QualitySum::default());
+    for t in &mesh.tets {
+        let p = t.map(|v| {
+            meet(v);
+            &mesh.points[v as usize]
+        });
+        let spokes = Spokes::new(p);
+        are_positive &= spokes.is_positive();
+        volume += spokes.volume;
+        quality.include(&spokes);
+    }
+    (are_positive, volume / 6.0, quality.piece())
+}
+
+/// Bounding box of faces.
+pub(super) fn bounds_of(points: &[Point3], faces: &[[u32; 3]]) -> [[f64; 3]; 2] {
+    let bounds = Aabb::of_points(faces.as_flattened().iter().map(|&v| &points[v as usize]));
+    [bounds.min.coords.into(), bounds.max.coords.into()]
+}
+
+/// True if the boundary of positive tetrahedra is star-shaped. They meet from opposite sides, so it is a cycle.
+pub(super) fn is_star(part: &PartView, boundary: &[[u32; 3]]) -> bool {
+    is_star_shaped(&part.mesh.points, boundary, &middle(part))
 }
 
 impl Certificate {
@@ -95,33 +124,20 @@ impl Certificate {
 
     /// Measures the tetrahedra, and says whether all lines about them hold.
     fn measure_cells(&mut self, mesh: &TetMesh, adjacency: &TetAdjacency) -> bool {
+        let mut used = vec![false; mesh.points.len()];
+        let are_positive;
+        (are_positive, self.volume, self.quality) = measured(mesh, |v| used[v as usize] = true);
         // Positive tetrahedra have four vertices each. Two with the same vertices are neighbours by a face (or it is
         // crowded), and when both are positive they see it turn the same way.
-        let mut sound = adjacency.crowded.is_empty();
-        let mut used = vec![false; mesh.points.len()];
-        let mut quality = QualitySum::default();
-        let mut volume = 0.0;
-        for t in &mesh.tets {
-            let p = t.map(|v| {
-                used[v as usize] = true;
-                &mesh.points[v as usize]
-            });
-            let spokes = Spokes::new(p);
-            sound &= spokes.is_positive();
-            volume += spokes.volume;
-            quality.include(&spokes);
-        }
-        self.volume = volume / 6.0;
-        self.quality = quality.piece();
-        sound && used.iter().all(|&used| used) && neighbors_are_opposite(mesh, adjacency)
+        let are_linked = adjacency.crowded.is_empty() && neighbors_are_opposite(mesh, adjacency);
+        are_positive && are_linked && used.iter().all(|&used| used)
     }
 
     /// Everything about the part's closed surface.
     fn look_at_boundary(&mut self, part: &PartView, adjacency: &TetAdjacency, are_cells_sound: bool) {
         let handles: Vec<u32> = adjacency.boundary().collect();
         let faces: Vec<[u32; 3]> = handles.iter().map(|&handle| face_vertices(&part.mesh.tets, handle)).collect();
-        // The boundary of tetrahedra that meet from opposite sides is a cycle.
-        let is_star = are_cells_sound && is_star_shaped(&part.mesh.points, &faces, &middle(part));
+        let is_star = are_cells_sound && is_star(part, &faces);
         let (owners, surfaces) = self.look_at_faces(part, &faces, is_star);
         let enclosed = match surfaces.all.len() {
             // The tetrahedra tell better.
@@ -151,8 +167,7 @@ impl Certificate {
         let (owners, labels) = owners(part, faces);
         self.take([labels]);
         let surfaces = if is_star { surfaces(points.len(), faces) } else { self.compare_faces(points, faces) };
-        let box_of = Aabb::of_points(faces.as_flattened().iter().map(|&v| &points[v as usize]));
-        self.bounds = [box_of.min.coords.into(), box_of.max.coords.into()];
+        self.bounds = bounds_of(points, faces);
         let sums: Vec<u64> = points.iter().map(point_sum).collect();
         for (face, owner) in faces.iter().zip(&owners) {
             let sum = face_sum(face.map(|v| sums[v as usize]));
@@ -250,7 +265,7 @@ impl Certificate {
         self.take([fans.done()]);
     }
 
-    fn hold_caps(&mut self, part: &PartView) {
+    pub(super) fn hold_caps(&mut self, part: &PartView) {
         let points = &part.mesh.points;
         let hold = |(cap, faces): &(crate::Cap, Vec<[u32; 3]>)| HeldCap {
             node: cap.node,

@@ -47,6 +47,7 @@ mod certificate;
 mod changed;
 mod glue;
 mod ids;
+mod image;
 mod joints;
 mod nests;
 mod pieces;
@@ -60,6 +61,7 @@ mod tests;
 
 pub use certificate::{certify_hollow, certify_with};
 pub use changed::{Changed, meetings_of};
+pub use image::certify_image;
 pub use pieces::{PiecesError, Unfit, check_pieces};
 pub(super) use sums::id_sums;
 pub use whole::{Looked, check_parts};
