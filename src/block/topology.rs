@@ -91,7 +91,7 @@ impl Topology {
     }
 }
 
-/// What is kept for other images is not compared.
+/// Compares the topology itself, without what is kept for other images.
 impl PartialEq for Topology {
     fn eq(&self, other: &Self) -> bool {
         self.adjacency == other.adjacency && self.discs == other.discs && self.wall == other.wall

@@ -87,7 +87,7 @@ pub(super) fn has_sound_points(mesh: &TetMesh) -> bool {
     mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
 }
 
-/// Whether all tetrahedra are positive, their volume and their quality. `meet` receives each vertex.
+/// True if all tetrahedra are positive, with their volume and their quality. `meet` receives each vertex.
 pub(super) fn measured(mesh: &TetMesh, mut meet: impl FnMut(u32)) -> (bool, f64, QualityPiece) {
     let (mut are_positive, mut volume, mut quality) = (true, 0.0, QualitySum::default());
     for t in &mesh.tets {

@@ -6,7 +6,7 @@ use super::{Certificate, HeldJoint, HeldSurface, PartView};
 use crate::check::nested::Enclosed;
 use crate::check::surface::Boundary;
 
-/// Certificate of a part that differs from another one in its points alone: tetrahedra, joints and caps have the same
+/// Certificate of a part that differs from another one in its points alone. Tetrahedra, joints and caps have the same
 /// vertices, and `like` is the other's certificate. `wall`: boundary faces in no joint and no cap.
 ///
 /// Conditions on vertices hold of both. Those on points are tested: tetrahedra are positive, and the boundary does not
