@@ -3,7 +3,7 @@
 use crate::faults::References;
 use crate::judge::{Outcome, Programs};
 use crate::rotate::{self, Settings};
-use crate::{gate, kinds, page, state};
+use crate::{compact, gate, kinds, page, state};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -20,7 +20,7 @@ Commands:
   case KIND SEED    Run one case, and print its outcome
   write KIND SEED   Write the input of a case to the scratch folder, and print the command
   kinds             List all kinds
-  page              Write the page of results
+  page              Compact the state file, and write the page of results
   gate              Compare the newest build with earlier ones
 
 Options:
@@ -32,7 +32,7 @@ Options:
   --shrink-seconds S Maximum time to shrink a finding [default: 60]
   --mesher FILE     Program under trial [default: anastomesh beside this program]
   --verifier FILE   Second checker [default: anastomesh-verify beside this program]
-  --state FILE      State file [default: target/trials/state.jsonl]
+  --state FILE      State file [default: docs/trust.jsonl]
   --findings DIR    Folder for findings [default: target/trials/findings]
   --scratch DIR     Folder for running cases [default: target/trials/scratch]
   --page FILE       Page of results [default: docs/trust.md]
@@ -80,7 +80,7 @@ fn defaults() -> Args {
     };
     let settings = Settings {
         programs: Programs { mesher: beside("anastomesh"), verifier: beside("anastomesh-verify") },
-        state: "target/trials/state.jsonl".into(),
+        state: "docs/trust.jsonl".into(),
         findings: "target/trials/findings".into(),
         scratch: "target/trials/scratch".into(),
         duration: Duration::from_secs(600),
@@ -133,7 +133,7 @@ fn command(args: &Args) -> io::Result<Option<u8>> {
             *path = std::path::absolute(&*path)?;
         }
     }
-    let _lock = lock(&settings.scratch, words.first())?;
+    let _lock = matches!(words[..], ["run" | "repeat" | "case", ..]).then(|| lock(&settings.scratch)).transpose()?;
     match words[..] {
         ["run"] => rotate::run(&settings).map(|totals| Some(verdict(totals))),
         ["repeat"] => rotate::repeat(&settings).map(|totals| Some(verdict(totals))),
@@ -143,7 +143,7 @@ fn command(args: &Args) -> io::Result<Option<u8>> {
             }
             Ok(Some(0))
         }
-        ["page"] => page::write(&settings.state, &args.page).map(|()| Some(0)),
+        ["page"] => write_page(&settings, &args.page).map(|()| Some(0)),
         ["gate"] => {
             let worse = gate::compare(&state::read(&settings.state)?);
             for line in &worse {
@@ -159,15 +159,22 @@ fn command(args: &Args) -> io::Result<Option<u8>> {
 }
 
 /// Locks the scratch folder: two runs in it would delete each other's files.
-fn lock(scratch: &Path, word: Option<&&str>) -> io::Result<Option<std::fs::File>> {
-    if !matches!(word, Some(&("run" | "repeat" | "case"))) {
-        return Ok(None);
-    }
+fn lock(scratch: &Path) -> io::Result<std::fs::File> {
     let file = std::fs::File::create(scratch.join("lock"))?;
     let busy =
         |e: std::fs::TryLockError| io::Error::other(format!("{}: {e}; give another --scratch", scratch.display()));
     file.try_lock().map_err(busy)?;
-    Ok(Some(file))
+    Ok(file)
+}
+
+/// Writes the page. The state file is compacted first, unless a run appends to it.
+fn write_page(settings: &Settings, page: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(&settings.scratch)?;
+    match lock(&settings.scratch) {
+        Ok(_lock) => compact::rewrite(&settings.state)?,
+        Err(error) => eprintln!("warning: the state file is not compacted: {error}"),
+    }
+    page::write(&settings.state, page)
 }
 
 fn verdict((cases, findings): (u64, u64)) -> u8 {

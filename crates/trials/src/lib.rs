@@ -2,7 +2,9 @@
 
 mod case;
 mod cli;
+mod compact;
 mod faults;
+mod format;
 mod gate;
 mod judge;
 mod kinds;

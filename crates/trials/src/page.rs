@@ -1,5 +1,7 @@
 //! Page of results, from the state file.
 
+use crate::compact::{OTHER, is_other};
+use crate::format::{code_span, grouped, percent};
 use crate::state::{self, Batch};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -26,7 +28,7 @@ const FAMILIES: [(&str, &str, &str); 7] = [
     ),
 ];
 
-/// Messages of a kind on the page. The state file has all.
+/// Messages of a kind on the page. The state file has more.
 const MESSAGES: usize = 4;
 
 /// Sum of the batches of a kind.
@@ -37,7 +39,6 @@ struct Sum {
     valid_by_one: u64,
     typed: BTreeMap<String, u64>,
     findings: BTreeMap<(u64, String), String>,
-    seeds: u64,
     worst: f64,
     worst_seed: u64,
 }
@@ -50,7 +51,6 @@ impl Sum {
         batch.typed.iter().for_each(|(message, count)| *self.typed.entry(message.clone()).or_default() += count);
         let findings = batch.findings.iter().map(|f| ((f.seed, f.sort.clone()), batch.version.clone()));
         self.findings.extend(findings);
-        self.seeds = self.seeds.max(batch.first + batch.count);
         if batch.worst > self.worst {
             (self.worst, self.worst_seed) = (batch.worst, batch.worst_seed);
         }
@@ -103,8 +103,8 @@ fn of_family<'a>(kinds: &'a BTreeMap<&str, Sum>, family: &str) -> impl Iterator<
 }
 
 fn head(batches: &[Batch]) -> String {
-    let dates: BTreeSet<&str> = batches.iter().map(|batch| batch.date.as_str()).collect();
-    let versions: BTreeSet<&str> = batches.iter().map(|batch| batch.version.as_str()).collect();
+    let dates: BTreeSet<&str> = batches.iter().flat_map(|batch| [batch.date.as_str(), batch.last_day()]).collect();
+    let versions: BTreeSet<String> = batches.iter().flat_map(|batch| builds(&batch.version)).collect();
     let (first, last) = (dates.first().unwrap_or(&""), dates.last().unwrap_or(&""));
     format!(
         "# Trials
@@ -122,7 +122,8 @@ target/release/anastomesh-trials repeat                                # all fin
 target/release/anastomesh-trials page                                  # this page
 ```
 
-`.ci/long` runs these commands. The seeds of a kind are 0 to the number of cases tried, without it.
+`.ci/long` runs these commands. The seeds of a kind are 0 to the number of cases tried, without it. Results are kept in
+[trust.jsonl](trust.jsonl), with a line for each kind and build.
 
 Runs from {first} to {last}. Builds: {}.
 
@@ -142,6 +143,14 @@ If N cases are called valid and none is wrong, the share of wrong ones is below 
 ",
         versions.iter().map(|v| format!("`{v}`")).collect::<Vec<_>>().join(", ")
     )
+}
+
+/// Builds of a version. A line that was put together later names several: `anastomesh 0.1.0 builds 2c7cfb6e, 6e31239b`.
+fn builds(version: &str) -> Vec<String> {
+    match version.split_once(" builds ") {
+        Some((name, builds)) => builds.split(", ").map(|build| format!("{name} build {build}")).collect(),
+        None => vec![version.to_owned()],
+    }
 }
 
 fn families(kinds: &BTreeMap<&str, Sum>) -> String {
@@ -197,19 +206,25 @@ fn table(family: &str, title: &str, note: &str, own: &[(&str, &Sum)]) -> String 
         );
     }
     out += "\n| kind | exit code | message | cases |\n|---|---|---|---|\n";
-    for (kind, sum) in own {
-        let mut messages: Vec<(&String, &u64)> = sum.typed.iter().collect();
-        messages.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
-        for (message, count) in messages.iter().take(MESSAGES) {
-            let (code, message) = message.split_once(": ").unwrap_or(("", message));
-            let _ = writeln!(out, "| {kind} | {code} | {} | {} |", code_span(message), grouped(**count));
-        }
-        if messages.len() > MESSAGES {
-            let rest: u64 = messages[MESSAGES..].iter().map(|(_, count)| **count).sum();
-            let _ = writeln!(out, "| {kind} | | other messages: {} | {} |", messages.len() - MESSAGES, grouped(rest));
-        }
-    }
+    out.extend(own.iter().map(|(kind, sum)| messages(kind, sum)));
     out + "\n"
+}
+
+/// Rows of the most frequent messages of a kind, and of the others together.
+fn messages(kind: &str, sum: &Sum) -> String {
+    let mut frequent: Vec<(&String, &u64)> = sum.typed.iter().filter(|(message, _)| !is_other(message)).collect();
+    frequent.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
+    frequent.truncate(MESSAGES);
+    let mut out = String::new();
+    for (message, count) in &frequent {
+        let (code, message) = message.split_once(": ").unwrap_or(("", message));
+        let _ = writeln!(out, "| {kind} | {code} | {} | {} |", code_span(message), grouped(**count));
+    }
+    let others = sum.typed.values().sum::<u64>() - frequent.iter().map(|(_, count)| **count).sum::<u64>();
+    if others > 0 {
+        let _ = writeln!(out, "| {kind} | | {OTHER} | {} |", grouped(others));
+    }
+    out
 }
 
 /// Table of findings. A finding is fixed if the last repetition of its case had none.
@@ -234,30 +249,8 @@ fn findings(kinds: &BTreeMap<&str, Sum>, batches: &[Batch]) -> String {
     out
 }
 
-/// Text as code in a cell of a table.
-fn code_span(text: &str) -> String {
-    format!("`{}`", text.replace('`', "'").replace('|', "\\|"))
-}
-
-fn percent(part: u64, whole: u64) -> f64 {
-    100.0 * part as f64 / whole.max(1) as f64
-}
-
 fn bound(wrong: u64, valid: u64) -> String {
     if wrong > 0 || valid <= 3 { "–".into() } else { format!("{:.1e}", 3.0 / valid as f64) }
-}
-
-/// Integer with commas between groups of three digits.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut out = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
 }
 
 #[cfg(test)]
@@ -277,5 +270,18 @@ mod tests {
         assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
         assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |"), "{page}");
+    }
+
+    #[test]
+    fn messages_counted_together_keep_the_totals() {
+        let mut batch =
+            Batch { kind: "networks/star".into(), count: 40, version: "p 1 builds a, b".into(), ..Batch::default() };
+        let counts =
+            [("3: x", 9), ("1: NOT valid: other messages", 5), (": other messages", 4), ("1: other messages", 2)];
+        batch.typed.extend(counts.map(|(message, count)| (message.to_owned(), count)));
+        let page = text(&[Batch { version: "p 1 build b".into(), count: 0, ..batch.clone() }, batch]);
+        assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 36 | 0 | – | 0.0 (0) |"), "{page}");
+        assert!(page.contains("| star | 3 | `x` | 18 |\n| star | | other messages | 22 |\n\n"), "{page}");
+        assert!(page.contains("Builds: `p 1 build a`, `p 1 build b`."), "{page}");
     }
 }

@@ -1,4 +1,4 @@
-//! State file: one JSON line per batch, so that a run continues where the last one ended.
+//! State file: one JSON line per batch, so that a run continues where the last one ended. `compact.rs` merges batches.
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub struct Finding {
     pub text: String,
 }
 
-/// Results of consecutive seeds of a kind.
+/// Results of seeds of a kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// Family and name of the kind.
@@ -43,47 +43,80 @@ pub struct Batch {
     pub repeats: bool,
     /// Version and build of the program.
     pub version: String,
-    /// Day.
+    /// First day.
     pub date: String,
+    /// Last day; empty if it is the first one.
+    pub until: String,
+    /// Seed after the last one, if seeds between the first and the last are in other batches. Otherwise 0.
+    pub end: u64,
 }
 
 impl Batch {
-    /// Line of the state file.
+    /// Seed after the last one.
+    pub fn end(&self) -> u64 {
+        self.end.max(self.first + self.count)
+    }
+
+    /// Last day.
+    pub fn last_day(&self) -> &str {
+        if self.until.is_empty() { &self.date } else { &self.until }
+    }
+
+    /// Line of the state file, without fields that are zero, false or empty.
     pub fn line(&self) -> String {
         let findings: Vec<Value> =
             self.findings.iter().map(|f| json!({"seed": f.seed, "sort": f.sort, "text": f.text})).collect();
-        json!({
+        let mut line = json!({
             "kind": self.kind, "first": self.first, "count": self.count, "valid": self.valid,
-            "valid_by_one": self.valid_by_one, "typed": self.typed, "findings": findings, "worst_s": self.worst,
+            "valid_by_one": self.valid_by_one, "typed": self.typed, "findings": findings,
+            // Fewer digits than a parser may change.
+            "worst_s": (self.worst * 1e3).round() / 1e3,
             "worst_seed": self.worst_seed, "repeats": self.repeats, "version": self.version, "date": self.date,
-        })
-        .to_string()
+            "until": self.until, "end": if self.end > self.first + self.count { self.end } else { 0 },
+        });
+        if let Some(fields) = line.as_object_mut() {
+            fields.retain(|_, value| !is_default(value));
+        }
+        line.to_string()
     }
 
-    /// Batch of a line; `None` if the line is cut or of another program.
+    /// Batch of a line; `None` if the line is cut or is not a batch.
     pub fn of_line(line: &str) -> Option<Self> {
         let value: Value = serde_json::from_str(line).ok()?;
-        let number = |key: &str| value[key].as_u64();
-        let text = |value: &Value| value.as_str().map(str::to_owned);
-        let typed = value["typed"].as_object()?.iter().map(|(message, count)| Some((message.clone(), count.as_u64()?)));
-        let findings = value["findings"]
-            .as_array()?
-            .iter()
-            .map(|f| Some(Finding { seed: f["seed"].as_u64()?, sort: text(&f["sort"])?, text: text(&f["text"])? }));
+        let number = |key: &str| value[key].as_u64().unwrap_or(0);
+        let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let typed = value["typed"].as_object().into_iter().flatten();
+        let findings = value["findings"].as_array().into_iter().flatten();
         Some(Self {
-            kind: text(&value["kind"])?,
-            first: number("first")?,
-            count: number("count")?,
-            valid: number("valid")?,
-            valid_by_one: number("valid_by_one")?,
-            typed: typed.collect::<Option<_>>()?,
-            findings: findings.collect::<Option<_>>()?,
-            worst: value["worst_s"].as_f64()?,
-            worst_seed: number("worst_seed")?,
-            repeats: value["repeats"].as_bool()?,
-            version: text(&value["version"])?,
-            date: text(&value["date"])?,
+            kind: value["kind"].as_str()?.to_owned(),
+            first: number("first"),
+            count: number("count"),
+            valid: number("valid"),
+            valid_by_one: number("valid_by_one"),
+            typed: typed.map(|(message, count)| Some((message.clone(), count.as_u64()?))).collect::<Option<_>>()?,
+            findings: findings
+                .map(|f| Some(Finding { seed: f["seed"].as_u64()?, sort: text(&f["sort"]), text: text(&f["text"]) }))
+                .collect::<Option<_>>()?,
+            worst: value["worst_s"].as_f64().unwrap_or(0.0),
+            worst_seed: number("worst_seed"),
+            repeats: value["repeats"].as_bool().unwrap_or(false),
+            version: text(&value["version"]),
+            date: text(&value["date"]),
+            until: text(&value["until"]),
+            end: number("end"),
         })
+    }
+}
+
+/// True for zero, false, and empty text, lists and objects.
+fn is_default(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Bool(value) => !value,
+        Value::Number(value) => value.as_f64() == Some(0.0),
+        Value::String(value) => value.is_empty(),
+        Value::Array(value) => value.is_empty(),
+        Value::Object(value) => value.is_empty(),
     }
 }
 
@@ -98,19 +131,23 @@ pub fn read(path: &Path) -> io::Result<Vec<Batch>> {
 
 /// Appends a batch.
 pub fn append(path: &Path, batch: &Batch) -> io::Result<()> {
+    append_line(path, &batch.line())
+}
+
+/// Appends a line.
+pub fn append_line(path: &Path, line: &str) -> io::Result<()> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder)?;
     }
     let mut file = OpenOptions::new().create(true).append(true).open(path)?;
     // The line break before the text ends a line that a killed run has cut.
-    let starts = file.metadata()?.len() == 0;
-    let text = if starts { batch.line() } else { format!("\n{}", batch.line()) };
-    file.write_all(text.as_bytes())
+    let before = if file.metadata()?.len() == 0 { "" } else { "\n" };
+    file.write_all(format!("{before}{line}").as_bytes())
 }
 
 /// First seed that no batch of a kind has tried.
 pub fn next_seed(batches: &[Batch], kind: &str) -> u64 {
-    batches.iter().filter(|batch| batch.kind == kind && !batch.repeats).map(|b| b.first + b.count).max().unwrap_or(0)
+    batches.iter().filter(|batch| batch.kind == kind && !batch.repeats).map(Batch::end).max().unwrap_or(0)
 }
 
 /// Day in the form 2026-01-31, in UTC (Hinnant's `civil_from_days`).
@@ -129,6 +166,18 @@ pub fn today() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_of_earlier_versions_are_read() {
+        let line = r#"{"kind":"a/b","first":0,"count":2,"valid":1,"valid_by_one":0,"typed":{"3: no":1},"findings":[],
+            "worst_s":0.12345,"worst_seed":1,"repeats":false,"version":"v","date":"2026-01-31"}"#;
+        let batch = Batch::of_line(line).expect("a batch");
+        assert_eq!((batch.count, batch.typed["3: no"], batch.last_day(), batch.end()), (2, 1, "2026-01-31", 2));
+        let short = r#"{"count":2,"date":"2026-01-31","kind":"a/b","typed":{"3: no":1},"valid":1,"version":"v","worst_s":0.123,"worst_seed":1}"#;
+        assert_eq!(batch.line(), short);
+        assert_eq!(Batch::of_line(short), Some(Batch { worst: 0.123, ..batch }));
+        assert_eq!(Batch::of_line(r#"{"figure":"fuzz"}"#), None);
+    }
 
     #[test]
     fn batches_survive_a_cut_line() {
