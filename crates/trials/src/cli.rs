@@ -3,7 +3,7 @@
 use crate::faults::References;
 use crate::judge::{Outcome, Programs};
 use crate::rotate::{self, Settings};
-use crate::{compact, gate, kinds, page, state};
+use crate::{compact, figures, gate, kinds, page, state};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -22,6 +22,10 @@ Commands:
   kinds             List all kinds
   page              Compact the state file, and write the page of results
   gate              Compare the newest build with earlier ones
+  add mutants PART OUTCOMES    Record figures of cargo-mutants: its file outcomes.json
+  add coverage FILE            Record figures of `cargo llvm-cov report --json --summary-only`
+  add fuzz TARGET LOG          Record figures of libFuzzer: a log with `-print_final_stats=1`
+  add predicates FILE          Record figures of the example `predicates`
 
 Options:
   --minutes M       Time of `run` [default: 10]
@@ -36,6 +40,7 @@ Options:
   --findings DIR    Folder for findings [default: target/trials/findings]
   --scratch DIR     Folder for running cases [default: target/trials/scratch]
   --page FILE       Page of results [default: docs/trust.md]
+  --of N            Number of mutants of which those of `add mutants` are a sample
 
 Exit codes: 0 no findings, 1 at least one, 2 bad arguments, 3 a file cannot be used
 ";
@@ -44,6 +49,7 @@ struct Args {
     words: Vec<String>,
     settings: Settings,
     page: PathBuf,
+    of: Option<u64>,
 }
 
 /// Runs the program `anastomesh-trials`.
@@ -90,7 +96,7 @@ fn defaults() -> Args {
         shrink_time: Duration::from_secs(60),
         jobs: 1,
     };
-    Args { words: Vec::new(), settings, page: "docs/trust.md".into() }
+    Args { words: Vec::new(), settings, page: "docs/trust.md".into(), of: None }
 }
 
 fn parse(words: Vec<String>) -> Result<Args, String> {
@@ -117,6 +123,7 @@ fn parse(words: Vec<String>) -> Result<Args, String> {
             "--findings" => settings.findings = value.into(),
             "--scratch" => settings.scratch = value.into(),
             "--page" => args.page = value.into(),
+            "--of" => args.of = Some(number()? as u64),
             _ => return Err(format!("unknown option {word}")),
         }
     }
@@ -144,6 +151,7 @@ fn command(args: &Args) -> io::Result<Option<u8>> {
             Ok(Some(0))
         }
         ["page"] => write_page(&settings, &args.page).map(|()| Some(0)),
+        ["add", ref figures @ ..] => figures::add(figures, args.of, &settings.state),
         ["gate"] => {
             let worse = gate::compare(&state::read(&settings.state)?);
             for line in &worse {

@@ -1,5 +1,6 @@
-//! Compact state file: one line per kind and build, and one per repeated finding.
+//! Compact state file: one line per kind and build, one per repeated finding, and one per figure.
 
+use crate::figures;
 use crate::state::Batch;
 use std::collections::BTreeMap;
 use std::fs;
@@ -41,7 +42,7 @@ fn compacted(text: &str) -> String {
         limit_messages(&mut batch.typed);
         batch.line()
     });
-    lines.map(|line| line + "\n").collect()
+    lines.chain(figures::merged(text).iter().map(ToString::to_string)).map(|line| line + "\n").collect()
 }
 
 /// Sum of two batches of a kind and build. Of repetitions, the last one.

@@ -3,6 +3,8 @@
 use crate::compact::{OTHER, is_other};
 use crate::format::{code_span, grouped, percent};
 use crate::state::{self, Batch};
+use crate::{figures, sections};
+use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
@@ -75,15 +77,15 @@ impl Sum {
 
 /// Writes the page.
 pub fn write(state: &Path, page: &Path) -> io::Result<()> {
-    let batches = state::read(state)?;
-    if batches.is_empty() {
+    let (batches, figures) = (state::read(state)?, figures::read(state)?);
+    if batches.is_empty() && figures.is_empty() {
         return Err(io::Error::other(format!("{}: no results; `anastomesh-trials run` makes them", state.display())));
     }
-    fs::write(page, text(&batches))
+    fs::write(page, text(&batches, &figures))
 }
 
 /// Text of the page.
-fn text(batches: &[Batch]) -> String {
+fn text(batches: &[Batch], figures: &[Value]) -> String {
     let mut kinds: BTreeMap<&str, Sum> = BTreeMap::new();
     batches.iter().filter(|batch| !batch.repeats).for_each(|batch| kinds.entry(&batch.kind).or_default().add(batch));
     let mut out = head(batches);
@@ -94,7 +96,7 @@ fn text(batches: &[Batch]) -> String {
             out += &table(family, title, note, &own);
         }
     }
-    out + &findings(&kinds, batches)
+    out + &findings(&kinds, batches) + &sections::text(figures)
 }
 
 fn of_family<'a>(kinds: &'a BTreeMap<&str, Sum>, family: &str) -> impl Iterator<Item = (&'a str, &'a Sum)> {
@@ -266,10 +268,11 @@ mod tests {
         batch.findings.push(Finding { seed: 7, sort: "panic".into(), text: String::new() });
         let gone = Batch { first: 7, count: 1, valid: 1, repeats: true, version: "next".into(), ..batch.clone() };
         let gone = Batch { findings: Vec::new(), ..gone };
-        let page = text(&[batch, gone]);
+        let fuzz = serde_json::json!({"figure": "fuzz", "part": "off", "executions": 7});
+        let page = text(&[batch, gone], &[fuzz]);
         assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
-        assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |"), "{page}");
+        assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |\n\n## Fuzzing\n"), "{page}");
     }
 
     #[test]
@@ -279,7 +282,7 @@ mod tests {
         let counts =
             [("3: x", 9), ("1: NOT valid: other messages", 5), (": other messages", 4), ("1: other messages", 2)];
         batch.typed.extend(counts.map(|(message, count)| (message.to_owned(), count)));
-        let page = text(&[Batch { version: "p 1 build b".into(), count: 0, ..batch.clone() }, batch]);
+        let page = text(&[Batch { version: "p 1 build b".into(), count: 0, ..batch.clone() }, batch], &[]);
         assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 36 | 0 | – | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `x` | 18 |\n| star | | other messages | 22 |\n\n"), "{page}");
         assert!(page.contains("Builds: `p 1 build a`, `p 1 build b`."), "{page}");
