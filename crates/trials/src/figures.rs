@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn logs_of_a_fuzzer_add_up() {
         let log = "INFO: Seed: 1\n#2\tINITED cov: 90 ft: 91 corp: 1/1b\n#1024\tpulse  cov: 95 ft: 99 corp: 9/9b\n\
-                   Done 1500 runs in 3 second(s)\nstat::number_of_executed_units: 1500\nstat::average_exec_per_sec:     500\n";
+                   stat::number_of_executed_units: 1500\nstat::average_exec_per_sec:     500\n";
         let clean = fuzz("off", log).expect("a figure");
         let crashed = fuzz("off", &format!("{log}SUMMARY: libFuzzer: timeout\n")).expect("a figure");
         let other = fuzz("ply", log).expect("a figure");

@@ -277,14 +277,18 @@ mod tests {
 
     #[test]
     fn messages_counted_together_keep_the_totals() {
-        let mut batch =
-            Batch { kind: "networks/star".into(), count: 40, version: "p 1 builds a, b".into(), ..Batch::default() };
+        let mut batch = Batch {
+            kind: "networks/star".into(),
+            count: 40,
+            version: "program builds a, b".into(),
+            ..Batch::default()
+        };
         let counts =
             [("3: x", 9), ("1: NOT valid: other messages", 5), (": other messages", 4), ("1: other messages", 2)];
         batch.typed.extend(counts.map(|(message, count)| (message.to_owned(), count)));
-        let page = text(&[Batch { version: "p 1 build b".into(), count: 0, ..batch.clone() }, batch], &[]);
+        let page = text(&[Batch { version: "program build b".into(), count: 0, ..batch.clone() }, batch], &[]);
         assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 36 | 0 | – | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `x` | 18 |\n| star | | other messages | 22 |\n\n"), "{page}");
-        assert!(page.contains("Builds: `p 1 build a`, `p 1 build b`."), "{page}");
+        assert!(page.contains("Builds: `program build a`, `program build b`."), "{page}");
     }
 }
