@@ -2,6 +2,7 @@
 //! The result is a valid Delaunay complex or an error that applies.
 #![no_main]
 
+use anastomesh_fuzz::stay_on_this_thread;
 use anastomesh_mesh::Point3;
 use anastomesh_mesh::geometry::predicates::insphere;
 use anastomesh_tet::TetError;
@@ -10,6 +11,7 @@ use libfuzzer_sys::fuzz_target;
 use std::collections::HashSet;
 
 fuzz_target!(|bytes: &[u8]| {
+    stay_on_this_thread();
     let Some((&mode, rest)) = bytes.split_first() else { return };
     let points = points(mode, rest);
     match delaunay(&points) {

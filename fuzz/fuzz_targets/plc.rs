@@ -3,11 +3,13 @@
 //! and the mesh is certified.
 #![no_main]
 
+use anastomesh_fuzz::stay_on_this_thread;
 use anastomesh_mesh::Point3;
 use anastomesh_tet::{Boundary, InputKind, Interior, Plc, Refinement, Stuck, TetError, Tetrahedralizer};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
+    stay_on_this_thread();
     let Some((&mode, rest)) = bytes.split_first() else { return };
     let (places, facets) = rest.split_at(rest.len().min(3 * (4 + usize::from(mode & 15))));
     let mut plc = Plc::new(points(places, mode & 16 != 0), Vec::new());

@@ -2,6 +2,7 @@
 //! star-shaped around the origin, hence valid, and the mesh is certified.
 #![no_main]
 
+use anastomesh_fuzz::stay_on_this_thread;
 use anastomesh_mesh::geometry::predicates::orient3d;
 use anastomesh_mesh::shapes::banded_sphere;
 use anastomesh_mesh::{Point3, TriMesh};
@@ -10,6 +11,7 @@ use libfuzzer_sys::fuzz_target;
 use std::collections::BTreeMap;
 
 fuzz_target!(|bytes: &[u8]| {
+    stay_on_this_thread();
     let Some((&mode, rest)) = bytes.split_first() else { return };
     let mut surface = banded_sphere(2 + u32::from(mode & 3));
     let (radii, flips) = rest.split_at(rest.len().min(surface.points.len()));

@@ -1,4 +1,6 @@
-//! Properties that the fuzz targets of one family of formats share.
+//! Properties that the fuzz targets of one family of formats share, and networks from bytes.
+
+pub mod networks;
 
 use anastomesh_io::NetworkOptions;
 use anastomesh_io::network::{NetworkFormat, read_network_from};
@@ -8,6 +10,16 @@ use anastomesh_io::volume::{MeshFile, MeshFormat, read_mesh_from, write_mesh_to}
 use anastomesh_mesh::check::{check_tets, check_volume};
 use anastomesh_mesh::facets::triangulate;
 use anastomesh_skeleton::clean;
+use std::sync::Once;
+
+/// Makes the fuzzer's thread the only one of the pool. Handing small inputs to another thread takes longer than the work.
+pub fn stay_on_this_thread() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // The pool may exist already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+    });
+}
 
 /// Reads a network. A network that can be read is cleaned or refused with an error.
 pub fn network(bytes: &[u8], format: NetworkFormat) {
