@@ -7,7 +7,7 @@
 //! The arguments are the number of cases of each predicate and the number of threads (1 by default). The cases depend
 //! only on their number. The exit code is 1 if a sign differs.
 //!
-//! Coordinates are integers times a power of two. Most points lie on a line, a plane or a sphere, or next to it: in a
+//! Coordinates are integers times a power of two. Most points lie on a line, a plane or a sphere, or next to it. In a
 //! lattice whose basis has determinant 1, large coordinates have determinants of a few units. Some cases mix small
 //! integers with multiples of a large power of two, so that differences of coordinates are rounded.
 
@@ -395,8 +395,8 @@ fn mixed<const N: usize>(random: &mut Random) -> ([[Polynomial; 3]; N], [Point3;
 
 /// Sign of a polynomial at 2^`shift`.
 ///
-/// The terms of a polynomial have magnitudes with a sum S below 2⁶². For a coordinate S is at most 2⁹, for a difference 2¹⁰,
-/// for a lift 3 · 2²⁰, for a determinant 6 · 2³⁰, for the in-sphere determinant 72 · 2⁵⁰. The terms below k add up to less
+/// The terms of a polynomial have magnitudes with a sum S below 2⁶². S is at most 2⁹ for a coordinate, and 2¹⁰ for a
+/// difference. It is 3 · 2²⁰ for a lift, 6 · 2³⁰ for a determinant, and 72 · 2⁵⁰ for the in-sphere determinant. The terms below k add up to less
 /// than 2⁶² · 2^(shift · (k − 1)). So the sum of the higher ones decides from 2⁶² / 2^shift on.
 fn sign_at(polynomial: Polynomial, shift: u32) -> i64 {
     let mut sum: i128 = 0;
