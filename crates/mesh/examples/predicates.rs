@@ -11,6 +11,8 @@
 //! lattice whose basis has determinant 1, large coordinates have determinants of a few units. Some cases mix small
 //! integers with multiples of a large power of two, so that differences of coordinates are rounded.
 
+#![allow(clippy::all, clippy::pedantic, reason = "integer arithmetic with casts throughout")]
+
 use anastomesh_mesh::Point3;
 use anastomesh_mesh::geometry::predicates::{MAX_MAGNITUDE, MIN_MAGNITUDE, collinear, insphere, orient2d, orient3d};
 use std::process::ExitCode;
