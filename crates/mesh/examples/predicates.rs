@@ -11,8 +11,6 @@
 //! lattice whose basis has determinant 1, large coordinates have determinants of a few units. Some cases mix small
 //! integers with multiples of a large power of two, so that differences of coordinates are rounded.
 
-#![allow(clippy::all, clippy::pedantic, reason = "integer arithmetic with casts throughout")]
-
 use anastomesh_mesh::Point3;
 use anastomesh_mesh::geometry::predicates::{MAX_MAGNITUDE, MIN_MAGNITUDE, collinear, insphere, orient2d, orient3d};
 use std::process::ExitCode;
@@ -41,6 +39,9 @@ const CHUNK: u64 = 1 << 16;
 /// Integer coordinates of points.
 type Lattice<const N: usize, const D: usize> = [[i64; D]; N];
 
+/// Makes a case, and evaluates its predicate.
+type MakeCase = fn(&mut Random) -> Case;
+
 /// Signs of one case and its points, without the unused ones.
 struct Case {
     exact: i64,
@@ -63,7 +64,7 @@ fn main() -> ExitCode {
         eprintln!("usage: predicates COUNT [THREADS]");
         return ExitCode::from(2);
     };
-    let predicates: [(&str, fn(&mut Random) -> Case); 4] = [
+    let predicates: [(&str, MakeCase); 4] = [
         ("orient2d", orient2d_case),
         ("orient3d", orient3d_case),
         ("insphere", insphere_case),
@@ -110,7 +111,7 @@ impl Total {
 }
 
 /// Compares cases in chunks. Each chunk has a seed of its own, so the result does not depend on the number of threads.
-fn compare(case: fn(&mut Random) -> Case, predicate: u64, count: u64, threads: u64) -> Total {
+fn compare(case: MakeCase, predicate: u64, count: u64, threads: u64) -> Total {
     let next = AtomicU64::new(0);
     let work = || {
         let mut total = Total::default();
@@ -153,7 +154,7 @@ impl Random {
     }
 
     fn below(&mut self, n: u32) -> u32 {
-        ((self.draw() >> 32) * u64::from(n) >> 32) as u32
+        (((self.draw() >> 32) * u64::from(n)) >> 32) as u32
     }
 
     fn between(&mut self, low: i32, high: i32) -> i32 {
@@ -398,8 +399,8 @@ fn mixed<const N: usize>(random: &mut Random) -> ([[Polynomial; 3]; N], [Point3;
 /// Sign of a polynomial at 2^`shift`.
 ///
 /// The terms of a polynomial have magnitudes with a sum S below 2⁶². S is at most 2⁹ for a coordinate, and 2¹⁰ for a
-/// difference. It is 3 · 2²⁰ for a lift, 6 · 2³⁰ for a determinant, and 72 · 2⁵⁰ for the in-sphere determinant. The terms below k add up to less
-/// than 2⁶² · 2^(shift · (k − 1)). So the sum of the higher ones decides from 2⁶² / 2^shift on.
+/// difference. It is 3 · 2²⁰ for a lift, 6 · 2³⁰ for a determinant, and 72 · 2⁵⁰ for the in-sphere determinant. The terms
+/// below k add up to less than 2⁶² · 2^(shift · (k − 1)). So the sum of the higher ones decides from 2⁶² / 2^shift on.
 fn sign_at(polynomial: Polynomial, shift: u32) -> i64 {
     let mut sum: i128 = 0;
     for term in polynomial.terms.into_iter().rev() {
