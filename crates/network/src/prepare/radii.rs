@@ -170,7 +170,12 @@ impl Places {
             _ if all[place as usize] || self.is_dip(place, &told) => Some(RadiusDefect::Absurd),
             _ => None,
         };
-        raw.nodes.iter().zip(&self.of_node).map(fault).collect()
+        let faults: Vec<_> = raw.nodes.iter().zip(&self.of_node).map(fault).collect();
+        if faults.iter().all(Option::is_some) {
+            // Radii that all contradict each other are still better than none.
+            return faults.into_iter().map(|fault| fault.filter(|&fault| fault == RadiusDefect::Missing)).collect();
+        }
+        faults
     }
 
     /// True if the vessel is ten times as wide near both sides of a place, or near one side if it ends on the other.
@@ -249,5 +254,30 @@ impl Places {
             heap.extend(further.map(|next| Reverse((Total(distance + next.length), next.place, radius))));
         }
         radii
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_skeleton::fixtures::network;
+
+    /// Two lines between the same places, whose radii contradict each other, and a vessel without radii. Found by the fuzz
+    /// target `prepare`.
+    #[test]
+    fn radii_that_all_contradict_each_other_are_kept() {
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [9.0, 0.0, 0.0]];
+        let mut raw = network(&points, 1.0, &[(0, 1), (2, 3), (4, 5)]);
+        for (node, radius) in [(1, 1e-3), (3, 1e-3), (4, 0.0), (5, f64::NAN)] {
+            raw.nodes[node].radius = radius;
+        }
+        for edge in &mut raw.edges {
+            edge.radii = edge.nodes.map(|n| raw.nodes[n.index()].radius);
+        }
+        let (network, filled) = fill(&raw).unwrap();
+        assert_eq!(network.check_numbers(), Ok(()));
+        let missing: Vec<_> = filled.iter().map(|f| (f.node, f.fault)).collect();
+        assert_eq!(missing, [(4, RadiusDefect::Missing), (5, RadiusDefect::Missing)]);
+        assert_eq!(network.nodes[1].radius, 1e-3);
     }
 }

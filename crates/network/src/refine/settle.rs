@@ -48,6 +48,7 @@ pub(super) fn settle(
     // Distances of pairs that lack the clearance already, relative to it.
     let relative = |o: &Overlap| o.distance / o.radii;
     let before: FxHashMap<[EdgeId; 2], f64> = touching(skeleton).pairs.iter().map(|o| (o.edges, relative(o))).collect();
+    let overlapping: FxHashSet<[EdgeId; 2]> = close(skeleton, &adjacency, 1.0).pairs.iter().map(|o| o.edges).collect();
     let settled = settled(skeleton, origin, (&groups.of_node, &before), kept(clearance), unit, progress)?;
     // Nodes that come too close to others return to where they were, with those around them. Then others may be too close to
     // these.
@@ -64,13 +65,18 @@ pub(super) fn settle(
         let mut after = touching(&state);
         after.pairs.retain(|o| relative(o) < before.get(&o.edges).copied().unwrap_or(1.0) - TOLERANCE);
         if after.pairs.is_empty() {
+            // The rule for crotches depends on radii: pairs that it leaves out with the clearance may overlap without.
+            after = close(&state, &adjacency, 1.0);
+            after.pairs.retain(|o| !overlapping.contains(&o.edges));
+        }
+        if after.pairs.is_empty() {
             *skeleton = state;
             break;
         }
         if round < ROUNDS / 2 {
             return_around(&state, &adjacency, &after, &mut shares);
         } else {
-            let worse = groups.touching(&after);
+            let worse = groups.touching(after.pairs);
             let returns = |group: &Option<usize>| group.is_some_and(|g| worse[g]);
             shares
                 .iter_mut()

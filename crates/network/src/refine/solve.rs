@@ -112,9 +112,14 @@ pub(super) fn solve(
     let gave_up = solver.is_over_budget() && !best.is_perfect();
     let mut best = best.state;
     if let (Some(_), Some(state)) = (leashes, &mut best) {
-        tighten::tighten(&mut state.skeleton, &state.origin, params.clearance);
+        let mut back = state.skeleton.clone();
+        tighten::tighten(&mut back, &state.origin, params.clearance);
         if !gave_up {
-            settle::settle(&mut state.skeleton, &state.origin, params.clearance, solver.unit, progress)?;
+            settle::settle(&mut back, &state.origin, params.clearance, solver.unit, progress)?;
+        }
+        // Nodes may not return if a protected metric becomes worse than in the input.
+        if back != state.skeleton && Figures::of(&back, true).worse_than(given, &params.hold).is_empty() {
+            state.skeleton = back;
         }
     }
     Ok(Moved { best, history, unit: solver.unit, gave_up })

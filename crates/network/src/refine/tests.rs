@@ -310,6 +310,20 @@ fn vessels_that_almost_touch_up_to_their_ends_move_by_less_than_a_radius() {
     }
 }
 
+/// Pairs in a crotch at the kept clearance may overlap at their own radii. Found by the fuzz target `refine`.
+#[test]
+fn a_polyline_that_reverses_keeps_its_number_of_overlaps() {
+    let points =
+        [[15.0, 7.5, 15.0], [15.0, 7.5, 0.0], [8.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 10.0]];
+    let given = network(&points, 0.5, &[(0, 1), (1, 2), (2, 3), (3, 4), (4, 5)]);
+    for iterations in [1, 3, 10, 60] {
+        let params = RefineParams::default().iterations(iterations).every(0);
+        let report = refine(&given, &params, &()).unwrap().report;
+        assert_eq!(report.given.overlaps, 1, "{iterations}");
+        assert!(report.result.overlaps <= 1, "{iterations}: {}", report.result.overlaps);
+    }
+}
+
 /// All vessels cross at one place, with fixed ends: the work is bounded, and the report states it.
 #[test]
 fn a_tangle_that_cannot_be_resolved_is_given_up() {

@@ -5,7 +5,7 @@
 
 use super::overlapping::overlapping;
 use anastomesh_mesh::geometry::{DisjointSets, Point3};
-use anastomesh_skeleton::{Adjacency, Overlaps, Skeleton};
+use anastomesh_skeleton::{Adjacency, Overlap, Overlaps, Skeleton};
 
 /// Clearance that vessels keep, as a fraction of that of the iterations.
 const KEPT: f64 = 0.4;
@@ -27,27 +27,29 @@ pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64
     // Fractions of the displacement that are too small, and that suffice.
     let mut too_small = vec![0.0; groups.count];
     let mut enough = vec![1.0; groups.count];
-    let mut place = |fractions: &[f64]| {
+    let mut place = |fractions: &[f64], clearances: &[f64]| {
         for (i, node) in skeleton.nodes.iter_mut().enumerate() {
             if let Some(group) = groups.of_node[i] {
                 node.position = origin[i] + (moved[i] - origin[i]) * fractions[group];
             }
         }
-        groups.touching(&close(skeleton, &adjacency, kept))
+        let pairs = clearances.iter().flat_map(|&clearance| close(skeleton, &adjacency, clearance).pairs);
+        groups.touching(pairs)
     };
     // Groups that are closer than that stay.
-    let stays = place(&enough);
+    let stays = place(&enough, &[kept]);
     for _ in 0..BISECTIONS {
         let middle = |i: usize| if stays[i] { 1.0 } else { 0.5 * (too_small[i] + enough[i]) };
         let fractions: Vec<f64> = (0..groups.count).map(middle).collect();
-        let touch = place(&fractions);
+        let touch = place(&fractions, &[kept]);
         for i in (0..groups.count).filter(|&i| !stays[i]) {
             *(if touch[i] { &mut too_small[i] } else { &mut enough[i] }) = fractions[i];
         }
     }
-    // Two groups that yielded to each other may touch: they keep their displacement.
+    // Two groups that yielded to each other may touch: they keep their displacement. The rule for crotches depends on radii, so
+    // pairs that it leaves out with the clearance may overlap without.
     for _ in 0..BISECTIONS {
-        let touch = place(&enough);
+        let touch = place(&enough, &[kept, 1.0]);
         let again: Vec<usize> = (0..groups.count).filter(|&i| touch[i] && !stays[i] && enough[i] < 1.0).collect();
         if again.is_empty() {
             return;
@@ -56,7 +58,7 @@ pub(super) fn tighten(skeleton: &mut Skeleton, origin: &[Point3], clearance: f64
             enough[i] = 1.0;
         }
     }
-    place(&vec![1.0; groups.count]);
+    place(&vec![1.0; groups.count], &[]);
 }
 
 /// Pairs of vessels closer than `clearance` times the sum of their radii.
@@ -108,9 +110,9 @@ impl Groups {
     }
 
     /// True for each group with a node of one of the pairs.
-    pub fn touching(&self, close: &Overlaps) -> Vec<bool> {
+    pub fn touching(&self, pairs: impl IntoIterator<Item = Overlap>) -> Vec<bool> {
         let mut touching = vec![false; self.count];
-        for node in close.pairs.iter().flat_map(|o| o.nodes).flatten() {
+        for node in pairs.into_iter().flat_map(|o| o.nodes).flatten() {
             if let Some(group) = self.of_node[node.index()] {
                 touching[group] = true;
             }
