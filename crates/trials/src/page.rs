@@ -16,7 +16,7 @@ const FAMILIES: [(&str, &str, &str); 7] = [
     ("networks", "Networks", "Each network is meshed without options."),
     ("refined", "Networks with `--refine`", "The kinds are those above, with the option `--refine`."),
     ("surfaces", "Surfaces", "Each surface is valid by construction, so a refusal is a finding."),
-    ("soups", "Surfaces that bound no volume", "Each surface is faulty by construction, so a mesh is a finding."),
+    ("soups", "Faulty input", "The input is faulty by construction, so a mesh is a finding."),
     (
         "complexes",
         "Complexes with regions",
@@ -134,7 +134,7 @@ Each case ends in one of four ways:
 - **Valid**: exit code 0, and both checkers accept the mesh. In brackets: cells that the second checker does not read, such as those of
   second order.
 - **Beyond a limit**: a mesh that both checkers accept, with exit code 1. The message names the limit, such as the distance from the
-  network.
+  network. The share of valid meshes counts these too.
 - **Refused**: a documented exit code with a message. Either no file is at the output, or the exit code is 1 and both checkers agree that
   the mesh is not valid.
 - **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
@@ -157,8 +157,8 @@ fn builds(version: &str) -> Vec<String> {
 
 fn families(kinds: &BTreeMap<&str, Sum>) -> String {
     let mut out = String::from(
-        "## Summary\n\n| family | tried | valid | valid, % | beyond a limit | refused | findings | wrong, called valid | bound 3/N | worst time, s |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "## Summary\n\n| family | tried | valid | valid, % | beyond a limit | valid mesh, % | refused | findings | wrong, called valid | bound 3/N | worst time, s |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (family, title, _) in FAMILIES {
         let own: Vec<&Sum> = of_family(kinds, family).map(|(_, sum)| sum).collect();
@@ -167,15 +167,16 @@ fn families(kinds: &BTreeMap<&str, Sum>) -> String {
         }
         let sum = |of: &dyn Fn(&Sum) -> u64| own.iter().map(|s| of(s)).sum::<u64>();
         let (count, valid) = (sum(&|s| s.count), sum(&|s| s.valid + s.valid_by_one));
-        let wrong = sum(&|s| s.wrong() as u64);
+        let (beyond, wrong) = (sum(&|s| s.not_faithful()), sum(&|s| s.wrong() as u64));
         let worst = own.iter().map(|s| s.worst).fold(0.0, f64::max);
         let _ = writeln!(
             out,
-            "| {title} | {} | {} | {:.1} | {} | {} | {} | {wrong} | {} | {worst:.1} |",
+            "| {title} | {} | {} | {:.1} | {} | {:.1} | {} | {} | {wrong} | {} | {worst:.1} |",
             grouped(count),
             grouped(valid),
             percent(valid, count),
-            grouped(sum(&|s| s.not_faithful())),
+            grouped(beyond),
+            percent(valid + beyond, count),
             grouped(sum(&|s| s.refused())),
             sum(&|s| s.findings.len() as u64),
             bound(wrong, valid),
@@ -187,19 +188,20 @@ fn families(kinds: &BTreeMap<&str, Sum>) -> String {
 fn table(family: &str, title: &str, note: &str, own: &[(&str, &Sum)]) -> String {
     let mut out = format!(
         "## {title}\n\n{note}\n\nCommand: `anastomesh-trials run --only {family}/`\n\n\
-         | kind | tried | valid | valid, % | beyond a limit | refused | findings | bound 3/N | worst time, s (seed) |\n\
-         |---|---|---|---|---|---|---|---|---|\n"
+         | kind | tried | valid | valid, % | beyond a limit | valid mesh, % | refused | findings | bound 3/N | worst time, s (seed) |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n"
     );
     for (kind, sum) in own {
         let valid = sum.valid + sum.valid_by_one;
         let by_one = if sum.valid_by_one > 0 { format!(" ({})", grouped(sum.valid_by_one)) } else { String::new() };
         let _ = writeln!(
             out,
-            "| {kind} | {} | {}{by_one} | {:.1} | {} | {} | {} | {} | {:.1} ({}) |",
+            "| {kind} | {} | {}{by_one} | {:.1} | {} | {:.1} | {} | {} | {} | {:.1} ({}) |",
             grouped(sum.count),
             grouped(valid),
             percent(valid, sum.count),
             grouped(sum.not_faithful()),
+            percent(valid + sum.not_faithful(), sum.count),
             grouped(sum.refused()),
             sum.findings.len(),
             bound(sum.wrong() as u64, valid),
@@ -270,7 +272,7 @@ mod tests {
         let gone = Batch { findings: Vec::new(), ..gone };
         let fuzz = serde_json::json!({"figure": "fuzz", "part": "off", "executions": 7});
         let page = text(&[batch, gone], &[fuzz]);
-        assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
+        assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 99.4 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
         assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |\n\n## Fuzzing\n"), "{page}");
     }
@@ -287,7 +289,7 @@ mod tests {
             [("3: x", 9), ("1: NOT valid: other messages", 5), (": other messages", 4), ("1: other messages", 2)];
         batch.typed.extend(counts.map(|(message, count)| (message.to_owned(), count)));
         let page = text(&[Batch { version: "program build b".into(), count: 0, ..batch.clone() }, batch], &[]);
-        assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 36 | 0 | – | 0.0 (0) |"), "{page}");
+        assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 10.0 | 36 | 0 | – | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `x` | 18 |\n| star | | other messages | 22 |\n\n"), "{page}");
         assert!(page.contains("Builds: `program build a`, `program build b`."), "{page}");
     }

@@ -6,7 +6,7 @@ use crate::random::{Random, decade};
 use crate::vector::along;
 use std::f64::consts::TAU;
 
-pub const KINDS: [(&str, MakeNetwork); 19] = [
+pub const KINDS: [(&str, MakeNetwork); 18] = [
     ("star of 4 to 30 vessels", star),
     ("fork of 0.5 to 20 degrees", fork),
     ("radius that jumps twentyfold", jump),
@@ -24,7 +24,6 @@ pub const KINDS: [(&str, MakeNetwork); 19] = [
     ("tree in a plane", plane_tree),
     ("radii over four decades", decades),
     ("daughters that fold back by 170 to 180 degrees", folded),
-    ("tree in units of 1e-150 or 1e150", extreme_units),
     ("tips in a crowd", crowd),
 ];
 
@@ -218,7 +217,7 @@ fn folded(r: &mut Random) -> Network {
 }
 
 /// Bifurcation whose squares overflow or underflow.
-fn extreme_units(r: &mut Random) -> Network {
+pub fn extreme_units(r: &mut Random) -> Network {
     let mut net = bifurcation(r.between(0.5, 1.5), 1.0);
     net.points[3][2] = 1.0;
     net.scaled(r.pick(&[1e-150, 1e150]))

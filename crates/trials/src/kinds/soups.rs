@@ -1,13 +1,14 @@
-//! Kinds of surfaces that bound no volume and must be refused.
+//! Kinds of input that must be refused: surfaces that bound no volume, and numbers out of range.
 
 use super::make::MakeCase;
+use super::repeated::extreme_units;
 use super::surfaces::spiky;
 use crate::case::{Case, Expect, Input};
 use crate::random::Random;
 use crate::surface::{Surface, cuboid, sphere};
 use crate::vector::along;
 
-pub const KINDS: [(&str, MakeCase); 12] = [
+pub const KINDS: [(&str, MakeCase); 13] = [
     ("surface without a triangle", |r| refused(open(r))),
     ("surface with an inverted triangle", |r| refused(inverted(r))),
     ("duplicate triangle", |r| refused(duplicate(r))),
@@ -20,6 +21,7 @@ pub const KINDS: [(&str, MakeCase); 12] = [
     ("triangle without area", |r| refused(flat(r))),
     ("coordinate that is not finite", not_finite),
     ("index out of range", out_of_range),
+    ("tree in units of 1e-150 or 1e150", |r| Case::new(Input::Network(extreme_units(r)), Expect::Refused)),
 ];
 
 fn refused(surface: Surface) -> Case {
