@@ -43,7 +43,8 @@ pub fn crotches(fork: &Fork, field: &mut Field) -> [Option<Point3>; 3] {
             let p = fork.node + direction * distance;
             let (value, gradient) = field.value_and_gradient(&p);
             if (value - 1.0).abs() <= OFF_WALL {
-                return Some(p);
+                // A step may pass the node, and end at the wall behind it.
+                return (distance > 0.0).then_some(p);
             }
             distance -= (value - 1.0) / gradient.dot(&direction);
         }

@@ -17,7 +17,9 @@ pub fn certify_image(part: &PartView, wall: &[[u32; 3]], like: &Certificate) -> 
     let is_sound = like.faults.is_empty() && !like.unsound && like.components == 1;
     let mesh = part.mesh;
     let counts = [mesh.points.len() as u32, mesh.tets.len() as u32];
-    let is_like = counts == [like.points, like.tets] && part.joints.len() == like.joints.len();
+    let is_like = counts == [like.points, like.tets]
+        && part.joints.len() == like.joints.len()
+        && part.caps.len() == like.caps.len();
     if !is_sound || !is_like || !has_sound_points(mesh) {
         return None;
     }
