@@ -158,6 +158,13 @@ mod tests {
             let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
             assert_eq!(orient_2d(a, b, e), exact_2d(a, b, e), "{round}: {a:?} {b:?} {e:?}");
             zeros += usize::from(exact_2d(a, b, e) == 0);
+            let beside = e.map(|x| x * (1.0 + 3.0 * f64::EPSILON));
+            let thirds = [a, b, beside].map(|p| p.map(|x| x / 3.0));
+            assert_eq!(
+                orient_2d(thirds[0], thirds[1], thirds[2]),
+                exact_2d(thirds[0], thirds[1], thirds[2]),
+                "{round}: {thirds:?}"
+            );
         }
         assert!((10..19_000).contains(&zeros), "{zeros}");
     }

@@ -200,6 +200,17 @@ fn patches_and_caps_are_compared() {
         }),
         ["wall_or_cap"]
     );
+    assert_eq!(
+        broken(|m| {
+            let i = wall(m);
+            m.labels[i] = 9;
+            m.patches.push((9, "plaque".into()));
+        }),
+        ["wall_or_cap"]
+    );
+    // The wall as a cap: connected, but with two rims.
+    let names = broken(|m| m.labels.iter_mut().for_each(|label| *label = [0, 3, 2, 1][*label as usize]));
+    assert!(names.contains(&"cap_disc"), "{names:?}");
     let cap = |m: &Mesh| m.labels.iter().position(|&label| label == 3).expect("a cap");
     // A face of the wall beside the cap, labelled as the cap: bent.
     let names = broken(|m| {
