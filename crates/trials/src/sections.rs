@@ -123,8 +123,8 @@ fn crate_of(folder: &str) -> String {
 
 fn fuzzing(figures: &[&Value]) -> String {
     let mut out = String::from(
-        "## Fuzzing\n\nExecutions of all recorded runs of libFuzzer. A finding is a run that ended with a crash, or beyond a limit of \
-         time or memory.\n\nCommand: `.ci/long 60 fuzz`\n\n\
+        "## Fuzzing\n\nExecutions of all recorded runs of libFuzzer: each run adds to them. A finding is a run that ended with a crash, or beyond a limit of \
+         time or memory.\n\nCommand: `TARGETS=delaunay .ci/long 60 fuzz`, or all targets without `TARGETS`\n\n\
          | target | executions | edges covered | findings | last run |\n|---|---|---|---|---|\n",
     );
     for figure in figures {
@@ -136,9 +136,9 @@ fn fuzzing(figures: &[&Value]) -> String {
 
 fn predicates(figures: &[&Value]) -> String {
     let mut out = String::from(
-        "## Predicates\n\nSigns of geometric predicates, compared with exact integers. Zero counts the degenerate cases among them.\n\n\
-         Command: `cargo run --release -p anastomesh-mesh --example predicates -- COUNT`\n\n\
-         | predicate | compared | differ | zero | day |\n|---|---|---|---|---|\n",
+        "## Predicates\n\nSigns of geometric predicates, compared with exact integers. Degenerate cases have the sign 0.\n\n\
+         Command: `COUNT=260000000 .ci/long predicates`\n\n\
+         | predicate | compared | differ | degenerate | day |\n|---|---|---|---|---|\n",
     );
     for figure in figures {
         let cells = ["compared", "differ", "zero"].map(|key| grouped(number(figure, key))).join(" | ");
