@@ -102,12 +102,29 @@ impl Staged {
             self.lock = None;
         }
         if let (Some(old), false) = (&self.earlier, self.is_linked) {
+            if self.contents.is_some() && exchange(&self.temporary, &self.target).is_ok() {
+                self.position = Position::Placed;
+                return self.hide_exchanged();
+            }
             fs::rename(&self.target, old)?;
             self.position = Position::SetAside;
         }
         fs::rename(&self.temporary, &self.target)?;
         self.position = Position::Placed;
         Ok(())
+    }
+
+    /// Moves the earlier folder to its hidden name, from the temporary name of the new one.
+    fn hide_exchanged(&mut self) -> io::Result<()> {
+        let Some(old) = &self.earlier else { return Ok(()) };
+        let hidden = fs::rename(&self.temporary, old);
+        if hidden.is_err() {
+            match exchange(&self.temporary, &self.target) {
+                Ok(()) => self.position = Position::Staged,
+                Err(_) => self.earlier = Some(self.temporary.clone()),
+            }
+        }
+        hidden
     }
 
     /// Restores the earlier state of the target. After a failure, the earlier output keeps its hidden name.
@@ -148,6 +165,19 @@ impl Staged {
             None => format!("{target} is new and could not be removed"),
         }
     }
+}
+
+/// Exchanges the names of two folders in one step.
+#[cfg(target_os = "linux")]
+fn exchange(a: &Path, b: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    Ok(renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE)?)
+}
+
+/// Other systems move the earlier folder aside first.
+#[cfg(not(target_os = "linux"))]
+fn exchange(_: &Path, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
 }
 
 impl Drop for Staged {
