@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// Options for a mesh with three files beside it.
-const OPTIONS: [&str; 9] = ["-q", "--rho", "2", "-o", "a.vtu", "--certificate", "a.json", "--report", "r.html"];
+const OPTIONS: [&str; 7] = ["-q", "-o", "a.vtu", "--certificate", "a.json", "--report", "r.html"];
 
 /// Contents of all files in a folder.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -27,7 +27,7 @@ fn run_in(folder: &Path, mut command: Command, network: &str, options: &[&str]) 
 fn an_output_that_cannot_be_moved_leaves_no_other() {
     let folder = folder();
     fs::write(folder.path().join("r_patches.csv"), "earlier").expect("written");
-    let options = ["-q", "--format", "npyd", "-o", "r.html", "--report", "r.html"];
+    let options = ["-q", "--format", "npy", "-o", "r.html", "--report", "r.html"];
     let refused = run_in(folder.path(), program(), "tree_30.vtp", &options).expect("the program runs");
     assert_says(&refused, BAD_INPUT, &["r.html: cannot be written"]);
     assert_eq!(files(folder.path()), BTreeMap::from([("r_patches.csv".to_owned(), b"earlier".to_vec())]));
