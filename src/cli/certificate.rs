@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::exit::Failure;
 use anastomesh_io::volume::MeshFormat;
-use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_io::{OutputSet, ensure_text_writable};
 use anastomesh_mesh::check::{CheckReport, Line, Outcome};
 
 /// Bytes that are read at once for a hash.
@@ -24,7 +24,7 @@ pub struct CertificateArgs {
     certificate: Option<PathBuf>,
 }
 
-/// Facts about a written mesh.
+/// Facts about a complete mesh.
 pub struct Certified<'a> {
     /// Network from which it was made.
     pub input: &'a Path,
@@ -53,28 +53,30 @@ impl CertificateArgs {
         ensure_text_writable(path).map_err(|e| Failure::unwritable(path, &e))
     }
 
-    /// Writes the requested certificate.
-    pub fn write(&self, certified: &Certified) -> Result<(), Failure> {
+    /// Adds the requested certificate to the outputs, which contain the mesh.
+    pub fn stage(&self, certified: &Certified, outputs: &mut OutputSet) -> Result<(), Failure> {
         let Some(path) = &self.certificate else { return Ok(()) };
-        let text = certified.text().map_err(|e| Failure::unreadable(certified.mesh, &e))?;
-        write_text(path, &text).map_err(|e| Failure::unwritable(path, &e))
+        let text = certified.text(outputs).map_err(|e| Failure::unreadable(certified.mesh, &e))?;
+        outputs.add_bytes(path, text.as_bytes()).map_err(|e| Failure::unwritable(path, &e))
     }
 }
 
 impl Certified<'_> {
-    fn text(&self) -> io::Result<String> {
+    fn text(&self, outputs: &OutputSet) -> io::Result<String> {
         let beside = ["node", "face"].map(|extension| self.mesh.with_extension(extension));
-        let beside = beside.into_iter().filter(|file| self.format == MeshFormat::Tetgen && file.exists());
-        let files: Vec<PathBuf> = std::iter::once(self.mesh.to_owned()).chain(beside).collect();
+        let beside = beside.iter().filter(|_| self.format == MeshFormat::Tetgen);
+        // The files do not have their names yet.
+        let mut files: Vec<&Path> = beside.filter_map(|file| outputs.temporary(file)).collect();
+        files.insert(0, outputs.temporary(self.mesh).ok_or(io::ErrorKind::NotFound)?);
         // Networks on standard input and in folders have no hash.
-        let input = if self.input.is_file() { entry(&[self.input.to_owned()])? } else { Value::Null };
+        let input = if self.input.is_file() { entry(self.input, &[self.input])? } else { Value::Null };
         let counts = &self.check.counts;
         let certificate = json!({
             "format": "anastomesh-certificate-1",
             "program": concat!("anastomesh ", env!("CARGO_PKG_VERSION")),
             "options": self.options,
             "input": input,
-            "mesh": entry(&files)?,
+            "mesh": entry(self.mesh, &files)?,
             "valid": self.check.failed().next().is_none(),
             "figures": {
                 "points": counts.points, "tets": counts.tets, "boundary_faces": counts.boundary_faces,
@@ -104,11 +106,11 @@ impl Certified<'_> {
     }
 }
 
-/// Name of the first file, and SHA-256 of all files, one after the other.
-fn entry(files: &[PathBuf]) -> io::Result<Value> {
+/// Name of a path, and SHA-256 of all its files, one after the other.
+fn entry(path: &Path, files: &[&Path]) -> io::Result<Value> {
     let (mut sha, mut buffer) = (Sha256::new(), vec![0; CHUNK]);
-    for path in files {
-        let mut file = File::open(path)?;
+    for file in files {
+        let mut file = File::open(file)?;
         loop {
             match file.read(&mut buffer)? {
                 0 => break,
@@ -116,7 +118,7 @@ fn entry(files: &[PathBuf]) -> io::Result<Value> {
             }
         }
     }
-    let name = files.first().and_then(|file| file.file_name()).map(|name| name.to_string_lossy().into_owned());
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     Ok(json!({"file": name, "sha256": hexadecimal(sha.finalize().as_slice())}))
 }
 

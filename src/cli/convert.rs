@@ -18,12 +18,13 @@ use super::progress::Bars;
 use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::rows::row;
 use crate::report::verdict::Verdict;
+use anastomesh_io::OutputSet;
 use anastomesh_io::network::{NetworkOptions, ensure_tree_writable, read_network, write_tree};
 use anastomesh_io::npy;
 use anastomesh_io::surface::{
     SurfaceFormat, ensure_boundary_writable, read_surface, write_boundary_watched, write_surface,
 };
-use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
+use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, stage_mesh, stage_regions};
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::second_order::SecondOrder;
@@ -96,6 +97,14 @@ enum Written {
     Mesh { points: usize, tets: usize, boundary_faces: usize },
     Surface { points: usize, triangles: usize },
     Network { nodes: usize, edges: usize },
+}
+
+impl Written {
+    /// Size of a mesh.
+    fn of(mesh: &dyn MeshSource) -> Self {
+        let SourceCounts { points, tets, boundary } = mesh.counts();
+        Self::Mesh { points, tets, boundary_faces: boundary }
+    }
 }
 
 impl fmt::Display for Written {
@@ -181,9 +190,11 @@ impl Args {
         if !self.split_regions {
             return Ok((self.write(mesh, notes, to, bars)?, Vec::new()));
         }
-        let regions = write_regions(&self.output, mesh.0, notes, self.grid.options(), bars);
-        let regions = regions.map_err(|e| failed(&e, bars))?;
-        Ok((self.write(mesh, notes, to, bars)?, regions))
+        let regions = stage_regions(&self.output, mesh.0, notes, self.grid.options(), bars);
+        let (regions, mut outputs) = regions.map_err(|e| failed(&e, bars))?;
+        outputs.append(self.stage(mesh, notes, bars)?);
+        outputs.place()?;
+        Ok((Written::of(mesh.0), regions))
     }
 
     /// Midpoints to write: those of a second-order mesh, if the output can hold them. Warns if it cannot.
@@ -204,6 +215,25 @@ impl Args {
         Ok(None)
     }
 
+    /// Writes the mesh under a temporary name.
+    fn stage(
+        &self,
+        (mesh, second): (&dyn MeshSource, Option<&SecondOrder>),
+        notes: &MeshNotes,
+        bars: &Bars,
+    ) -> Result<OutputSet, Failure> {
+        let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
+        let options = WriteOptions::default()
+            .format(self.format.format)
+            .memory((self.memory / 4) as usize)
+            .grid(self.grid.options())
+            .prisms(self.format.prisms)
+            .parts(self.format.parts)
+            .second_order(second)
+            .remark(&remark as &dyn Fn(&str));
+        stage_mesh(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))
+    }
+
     fn write(
         &self,
         (mesh, second): (&dyn MeshSource, Option<&SecondOrder>),
@@ -212,18 +242,8 @@ impl Args {
         bars: &Bars,
     ) -> Result<Written, Failure> {
         if to == FileKind::Mesh {
-            let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
-            let options = WriteOptions::default()
-                .format(self.format.format)
-                .memory((self.memory / 4) as usize)
-                .grid(self.grid.options())
-                .prisms(self.format.prisms)
-                .parts(self.format.parts)
-                .second_order(second)
-                .remark(&remark as &dyn Fn(&str));
-            write_mesh_with(&options, &self.output, mesh, notes, bars).map_err(|e| failed(&e, bars))?;
-            let SourceCounts { points, tets, boundary } = mesh.counts();
-            return Ok(Written::Mesh { points, tets, boundary_faces: boundary });
+            self.stage((mesh, second), notes, bars)?.place()?;
+            return Ok(Written::of(mesh));
         }
         let faces = if self.no_caps { BoundaryPart::Wall } else { BoundaryPart::Whole };
         let surface = BoundarySurface::new(mesh, faces)

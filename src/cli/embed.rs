@@ -23,9 +23,9 @@ use super::stop::{NOTHING_KEPT, Stop};
 use crate::report::embed::{EmbedSummary, table};
 use crate::report::verdict::Verdict;
 use anastomesh_domain::{DomainError, Embedding, PiecesError};
+use anastomesh_io::ensure_text_writable;
 use anastomesh_io::network::{NetworkFile, NodeNames};
-use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, write_mesh_with};
-use anastomesh_io::{bytes_to_commit, ensure_text_writable};
+use anastomesh_io::volume::{MeshFormat, MeshNotes, WriteOptions, ensure_writable_as, stage_mesh};
 use anastomesh_mesh::check::CheckReport;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::progress::{Progress, Stage};
@@ -129,19 +129,19 @@ impl EmbedRun<'_> {
             .grid(self.grid.options())
             .parts(self.format.parts)
             .remark(&remark as &dyn Fn(&str));
-        // Complete before the mesh appears, so that a full disk cannot leave a mesh beside the table of an earlier one.
         let (path, text) = (self.table(), table(pieces, &vessels.network, &vessels.edges, &vessels.names));
         let unwritable = |e: &dyn Display| Failure::unwritable(&path, e);
         let text = text.map_err(|e| unwritable(&e))?;
-        let table = bytes_to_commit(&path, &text).map_err(|e| unwritable(&e))?;
-        let write = || write_mesh_with(&how, self.output, mesh, &notes, bars);
+        let stage = || stage_mesh(&how, self.output, mesh, &notes, bars);
         let failed = |e: &dyn Display| {
             if bars.is_cancelled() { Failure::stopped(NOTHING_KEPT) } else { Failure::input(e.to_string()) }
         };
-        bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
-        table.commit().map_err(|e| unwritable(&e))?;
+        let mut outputs = bars.during(Stage::Write, stage).map_err(|e| failed(&e))?;
+        outputs.add_bytes(&path, &text).map_err(|e| unwritable(&e))?;
         let (input, format) = (&self.network.network, self.format.of(self.output)?);
-        self.certificate.write(&Certified { input, mesh: self.output, format, options: &options, check })?;
+        let certified = Certified { input, mesh: self.output, format, options: &options, check };
+        self.certificate.stage(&certified, &mut outputs)?;
+        outputs.place()?;
         let (verdict, summary) = (Verdict::of_check(check), EmbedSummary::of(made, &vessels.network));
         self.print(&summary, vessels, check, &verdict, bars)?;
         Ok(conclude(self.common, &verdict))

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
+use anastomesh_io::OutputError;
 use anastomesh_network::flow::NotConverged;
 
 /// The exit codes, as in `docs/meshing.md`.
@@ -59,6 +60,12 @@ pub struct Failure {
 impl From<NotConverged> for Failure {
     fn from(error: NotConverged) -> Self {
         Self::stage(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::input(error.to_string())
     }
 }
 

@@ -40,9 +40,9 @@ use crate::report::verdict::{Verdict, missing};
 use crate::run::{Attempt, Defect, NetworkMesh, Networks, PreparedRun, Run};
 use anastomesh_domain::{DomainError, DomainPlan, ShellsReport};
 use anastomesh_flow::{Caps, Datum, FlowPlan, VesselData};
-use anastomesh_io::network::{NodeNames, ensure_network_writable};
-use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, write_mesh_with, write_regions};
-use anastomesh_io::{AtomicFile, bytes_to_commit, ensure_text_writable};
+use anastomesh_io::network::ensure_network_writable;
+use anastomesh_io::volume::{MeshFormat, WriteOptions, ensure_writable_as, stage_mesh, stage_regions};
+use anastomesh_io::{OutputSet, ensure_text_writable};
 use anastomesh_mesh::beside::Beside;
 use anastomesh_mesh::check::text::conditions;
 use anastomesh_mesh::check::{CheckReport, Expectation};
@@ -241,7 +241,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     // Shards do not write shared files.
     if shard.is_none() && !args.dry_run && args.refined.is_some() && prepared.networks.refine.is_some() {
         stop.keep();
-        args.write_refined(&prepared.networks)?;
+        args.stage_refined(&prepared.networks)?.place()?;
     }
     if args.dry_run {
         let mut found = pool.install(|| prepared.forecast()).map_err(|e| Failure::stage(e.to_string()))?;
@@ -370,7 +370,8 @@ impl Args {
         bars: &Bars,
     ) -> Result<Exit, Failure> {
         bars.keep();
-        self.tell_refined(&made.networks)?;
+        let mut outputs = self.stage_refined(&made.networks)?;
+        self.tell_refined(&made.networks);
         let asked = Some(&self.data).filter(|data| !data.is_empty());
         let data = asked.map(|data| VesselData::new(data.clone(), &made.network, &made.mesh)).transpose()?;
         let remark = |text: &str| bars.note(&format!("{}: {text}", self.output.display()));
@@ -414,25 +415,27 @@ impl Args {
         if second.as_ref().is_some_and(|second| !second.is_balanced) {
             bars.note(UNBALANCED);
         }
-        // Complete before the mesh appears, so that a full disk cannot leave a mesh beside the table of an earlier one.
-        let table = made.caps.as_ref().map(|caps| self.write_table(caps, &made.networks.names)).transpose()?;
-        let write = || write_mesh_with(&options, &self.output, written, &notes, bars);
-        bars.during(Stage::Write, write).map_err(|e| failed(&e))?;
+        let stage = || stage_mesh(&options, &self.output, written, &notes, bars);
+        outputs.append(bars.during(Stage::Write, stage).map_err(|e| failed(&e))?);
         let mut parts = Vec::new();
         if self.domain.splits() && domain.is_some() {
-            let split = || write_regions(&self.output, written, &notes, self.grid.options(), bars);
-            parts = bars.during(Stage::Write, split).map_err(|e| failed(&e))?;
+            let split = || stage_regions(&self.output, written, &notes, self.grid.options(), bars);
+            let (paths, regions) = bars.during(Stage::Write, split).map_err(|e| failed(&e))?;
+            outputs.append(regions);
+            parts = paths;
         }
-        if let Some(table) = table {
-            table.commit().map_err(|e| self.no_table(&e))?;
+        if let Some(caps) = &made.caps {
+            let text = caps::table(caps, &made.networks.names).map_err(|e| self.no_table(&e))?;
+            outputs.add_bytes(&self.table(), text.as_bytes()).map_err(|e| self.no_table(&e))?;
         }
-        self.certificate.write(&Certified {
+        let certified = Certified {
             input: &self.network.network,
             mesh: &self.output,
             format: self.format.of(&self.output)?,
             options: &self.typed(made.networks.refine.is_some()),
             check,
-        })?;
+        };
+        self.certificate.stage(&certified, &mut outputs)?;
         let name = |node| made.networks.names.of(NodeId(node));
         let verdict = Verdict::of_mesh(check, &made.report, &self.fidelity.refused(&made.defects), &name);
         let mut run = made.report.clone();
@@ -452,9 +455,11 @@ impl Args {
             verdict: &verdict,
         };
         if self.report.page().is_some() {
-            bars.during(Stage::Report, || self.write_page(plan, &made.networks, &run, Some(&found)))?;
+            let page = || self.stage_page(plan, &made.networks, (&run, Some(&found)), &mut outputs);
+            bars.during(Stage::Report, page)?;
             run.stages = bars.stages();
         }
+        outputs.place()?;
         self.print(plan, &made.networks, &run, Some(&found))?;
         if !self.common.quiet {
             self.blocks.advise(&run, !made.is_valid());
@@ -485,20 +490,20 @@ impl Args {
         Regions::around(&lumen, plan, store, bars).map(Some).map_err(failed)
     }
 
-    /// Writes the HTML report.
-    fn write_page(
+    /// Adds the HTML report to the outputs.
+    fn stage_page(
         &self,
         plan: &MeshPlan,
         networks: &Networks,
-        run: &RunReport,
-        found: Option<&Found>,
+        (run, found): (&RunReport, Option<&Found>),
+        outputs: &mut OutputSet,
     ) -> Result<(), Failure> {
         let name = |node| networks.names.of(NodeId(node));
         let failed = || (Mark::Bad, missing(run, &name));
         let verdict = found.map_or_else(failed, |found| page::headline(found.check, found.verdict));
         let unit = page::LengthUnit(self.network.units.map(|units| units.names()[1]));
         let invalid = found.is_none_or(|found| !found.check.is_valid());
-        self.report.write(&self.output, Some(verdict), plan, |page| {
+        self.report.stage((&self.output, outputs), Some(verdict), plan, |page| {
             page.add(page::advice(&self.blocks.advice(run, invalid)));
             let Some(&Found { mesh, network, check, fidelity, changes, caps, .. }) = found else {
                 page.add(page::failed_blocks(&networks.network, run, unit)?);
@@ -530,12 +535,6 @@ impl Args {
         })
     }
 
-    /// Writes the table of inlets and outlets, which still has to be moved to its path.
-    fn write_table(&self, caps: &Caps, names: &NodeNames) -> Result<AtomicFile, Failure> {
-        let text = caps::table(caps, names).map_err(|e| self.no_table(&e))?;
-        bytes_to_commit(&self.table(), text.as_bytes()).map_err(|e| self.no_table(&e))
-    }
-
     /// Path of the table of inlets and outlets.
     fn table(&self) -> PathBuf {
         let mut name = self.output.file_stem().unwrap_or_default().to_owned();
@@ -555,23 +554,21 @@ impl Args {
         format!("mesh {}{core}{layers}{regions}{order}", self.blocks.typed(is_refined))
     }
 
-    /// Writes the refined network, if requested: the network as given if that is meshed.
-    fn write_refined(&self, networks: &Networks) -> Result<(), Failure> {
-        let Some(path) = &self.refined else { return Ok(()) };
+    /// Outputs with the refined network, if requested: the network as given if that is meshed.
+    fn stage_refined(&self, networks: &Networks) -> Result<OutputSet, Failure> {
+        let Some(path) = &self.refined else { return Ok(OutputSet::default()) };
         if let Some(refined) = &networks.refined {
-            return super::refine::write(path, &refined.skeleton, &refined.origin);
+            return super::refine::stage(path, &refined.skeleton, &refined.origin);
         }
         let at: Vec<Point3> = networks.prepared.nodes.iter().map(|node| node.position).collect();
-        super::refine::write(path, &networks.prepared, &at)
+        super::refine::stage(path, &networks.prepared, &at)
     }
 
-    /// Writes the refined network that was meshed, and its report.
-    fn tell_refined(&self, networks: &Networks) -> Result<(), Failure> {
-        self.write_refined(networks)?;
+    /// Prints the report of the refined network that was meshed.
+    fn tell_refined(&self, networks: &Networks) {
         if let Some(report) = networks.refine.as_ref().filter(|_| self.common.verbose && !self.common.json) {
             log::note(&report.text(&|node| networks.names.of(NodeId(node))));
         }
-        Ok(())
     }
 
     fn print(

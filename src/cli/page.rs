@@ -9,7 +9,7 @@ use super::config::options_in_force;
 use super::exit::Failure;
 use super::stop;
 use crate::report::page::{Mark, Page, Section};
-use anastomesh_io::{ensure_text_writable, write_text};
+use anastomesh_io::{OutputSet, ensure_text_writable};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
@@ -42,6 +42,19 @@ impl ReportArgs {
         plan: &impl Serialize,
         fill: impl FnOnce(&mut Page) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        let mut outputs = OutputSet::default();
+        self.stage((about, &mut outputs), verdict, plan, fill)?;
+        Ok(outputs.place()?)
+    }
+
+    /// Adds the report to the outputs of a run.
+    pub fn stage(
+        &self,
+        (about, outputs): (&Path, &mut OutputSet),
+        verdict: Option<(Mark, String)>,
+        plan: &impl Serialize,
+        fill: impl FnOnce(&mut Page) -> io::Result<()>,
+    ) -> Result<(), Failure> {
         let Some(path) = &self.report else { return Ok(()) };
         let mut page = Page::new(about.file_name().unwrap_or(about.as_os_str()).to_string_lossy(), verdict);
         fill(&mut page).map_err(|e| Failure::input(format!("{}: {e}", about.display())))?;
@@ -52,6 +65,6 @@ impl ReportArgs {
                 .table(&["option", "value", "source"], options_in_force())
                 .folded("Resolved parameters (JSON)", &plan),
         );
-        write_text(path, &page.html()).map_err(|e| Failure::unwritable(path, &e))
+        outputs.add_bytes(path, page.html().as_bytes()).map_err(|e| Failure::unwritable(path, &e))
     }
 }

@@ -23,8 +23,8 @@ use crate::report::refine::{brief, csv, panels};
 use crate::report::summary::fidelity_rows;
 use crate::report::verdict::Verdict;
 use crate::run::{Defect, Limits};
-use anastomesh_io::network::{ensure_network_writable, refinement_arrays, write_network};
-use anastomesh_io::write_text;
+use anastomesh_io::OutputSet;
+use anastomesh_io::network::{ensure_network_writable, refinement_arrays, stage_network};
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_network::PrepareReport;
 use anastomesh_network::{Crowded, Freedom, Metric, RefineParams, RefineReport, Refined, Residual, refine};
@@ -190,11 +190,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let bars = Bars::new(args.common.quiet, args.common.progress, stop.clone());
     let refined = pool.install(|| refine(&network.skeleton, &params, &bars)).map_err(|e| refine_failure(&e))?;
     stop.keep();
-    write(&args.output, &refined.skeleton, &refined.origin)?;
+    let mut outputs = stage(&args.output, &refined.skeleton, &refined.origin)?;
     let report = &refined.report;
     for (path, text) in [(&args.metrics, csv as fn(&RefineReport) -> String), (&args.plot, |r| svg(&panels(r)))] {
         if let Some(path) = path {
-            write_text(path, &text(report)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
+            let added = outputs.add_bytes(path, text(report).as_bytes());
+            added.map_err(|e| Failure::input(format!("{}: {e}", path.display())))?;
         }
     }
     let name = |node| network.names.of(NodeId(node));
@@ -203,11 +204,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let verdict = Verdict::of_refinement(report, ensures, &args.fidelity.refused(&defects), &name);
     let unit = page::LengthUnit(args.network.units.map(|units| units.names()[1]));
     pool.install(|| {
-        args.report.write(&args.output, Some(page::of_refinement(&verdict)), &params, |page| {
+        let headline = Some(page::of_refinement(&verdict));
+        args.report.stage((&args.output, &mut outputs), headline, &params, |page| {
             page.add(page::refinement(report, &network.skeleton, &refined.skeleton, unit)?);
             Ok(())
         })
     })?;
+    outputs.place()?;
     if args.common.json {
         let program = concat!("anastomesh ", env!("CARGO_PKG_VERSION"));
         let (parameters, prepare, verdict) = (&params, &network.report, &*verdict.text);
@@ -245,8 +248,8 @@ fn compared(network: &PreparedNetwork, refined: &Refined, limits: Limits) -> Com
     Comparison { fidelity, changes, defects, excused }
 }
 
-/// Writes a refined network.
-pub(super) fn write(path: &Path, network: &Skeleton, origin: &[Point3]) -> Result<(), Failure> {
+/// Writes a refined network under a temporary name.
+pub(super) fn stage(path: &Path, network: &Skeleton, origin: &[Point3]) -> Result<OutputSet, Failure> {
     let arrays = refinement_arrays(network, origin);
-    write_network(path, network, &arrays).map_err(|e| Failure::input(e.to_string()))
+    stage_network(path, network, &arrays).map_err(|e| Failure::input(e.to_string()))
 }

@@ -18,6 +18,7 @@ mod messages;
 mod network_files;
 mod network_run;
 mod order;
+mod outputs;
 mod parts;
 mod refine;
 mod regions;

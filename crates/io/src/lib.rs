@@ -65,7 +65,7 @@ pub mod faults {
 }
 
 pub use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
-pub use file::{AtomicFile, bytes_to_commit, ensure_text_writable, write_bytes, write_text};
+pub use file::{AtomicFile, OutputError, OutputSet, ensure_text_writable, write_bytes, write_text};
 pub use network::{NetworkArray, NetworkFile, NetworkFileError, NetworkOptions, read_network, write_network};
 pub use surface::{SurfaceFileError, read_surface, write_boundary, write_surface};
 pub use volume::{MeshFile, MeshFileError, MeshNotes, read_mesh, write_mesh};

@@ -6,9 +6,9 @@ use crate::cli::progress::Bars;
 use crate::cli::regions::advice;
 use crate::cli::run::failure;
 use crate::cli::stop;
-use crate::pipeline::MeshPlan;
+use crate::pipeline::{MeshPlan, RunReport};
 use crate::report::verdict::missing;
-use crate::run::MeshingError;
+use crate::run::{MeshingError, Networks};
 use anastomesh_domain::DomainError;
 use anastomesh_skeleton::NodeId;
 
@@ -19,15 +19,20 @@ impl Args {
         Failure::input(format!("{}: {error}{advice}", self.network.network.display()))
     }
 
+    /// Writes the refined network and the HTML report of a run without mesh.
+    fn write_reports(&self, plan: &MeshPlan, networks: &Networks, report: &RunReport) -> Result<(), Failure> {
+        let mut outputs = self.stage_refined(networks)?;
+        self.stage_page(plan, networks, (report, None), &mut outputs)?;
+        Ok(outputs.place()?)
+    }
+
     /// Failure of a run, after its reports.
     pub(super) fn explain(&self, error: MeshingError, plan: &MeshPlan, bars: &Bars) -> Failure {
         let MeshingError::Blocks { report, networks } = error else { return self.explain_alone(error) };
         bars.keep();
-        if let Err(failure) = self.tell_refined(&networks) {
-            return failure;
-        }
-        let paged = self.write_page(plan, &networks, &report, None);
-        if let Err(failure) = paged.and_then(|()| self.print(plan, &networks, &report, None)) {
+        self.tell_refined(&networks);
+        let written = self.write_reports(plan, &networks, &report);
+        if let Err(failure) = written.and_then(|()| self.print(plan, &networks, &report, None)) {
             return failure;
         }
         if !self.common.quiet {

@@ -31,6 +31,7 @@ use crate::report::tetrahedralize::{
     region_sizes, volume_of,
 };
 use crate::report::verdict::Verdict;
+use anastomesh_io::OutputSet;
 use anastomesh_mesh::VolumeMesh;
 use anastomesh_mesh::dihedral::DihedralHistogram;
 use anastomesh_mesh::quality::TetQuality;
@@ -120,10 +121,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         report.second_order = midpoints.as_ref().map(|midpoints| midpoints.1);
         let mesh =
             MeshParts { volume: &volume, layers: &layers, second_order: midpoints.as_ref().map(|found| &found.0) };
-        let written = watch
-            .time("write", || pool.install(|| output::write((&target, args.parts), mesh, &input, &plan, &listener)))?;
+        let stage = || output::stage((&target, args.parts), mesh, &input, &plan, &listener);
+        let (written, mut outputs) = watch.time("write", || pool.install(stage))?;
         report.files = written.iter().map(|path| path.display().to_string()).collect();
-        pool.install(|| write_page(args, &plan, &report, &volume))?;
+        pool.install(|| stage_page(args, &plan, (&report, &volume), &mut outputs))?;
+        outputs.place()?;
     }
     report.stages = watch.stages();
     report.peak_memory = common::peak_memory();
@@ -178,11 +180,16 @@ fn make(
     Ok(Some(made).filter(|_| !plan.check_only))
 }
 
-/// Writes the HTML report.
-fn write_page(args: &Args, plan: &TetPlan, report: &TetReport, mesh: &VolumeMesh) -> Result<(), Failure> {
+/// Adds the HTML report to the outputs.
+fn stage_page(
+    args: &Args,
+    plan: &TetPlan,
+    (report, mesh): (&TetReport, &VolumeMesh),
+    outputs: &mut OutputSet,
+) -> Result<(), Failure> {
     let Verdict { is_good, text } = report.verdict(plan.check_only);
     let verdict = (if is_good { Mark::Good } else { Mark::Bad }, text);
-    args.report.write(&args.input, Some(verdict), plan, |page| {
+    args.report.stage((&args.input, outputs), Some(verdict), plan, |page| {
         page.add(Section::new("Summary").folded("Terminal output", &report.text(true, &common::ended(&[]))));
         page.add(Section::new("Overview").pictures(&page::mesh_pictures(mesh)?, false)?);
         if let Some(quality) = &report.quality {

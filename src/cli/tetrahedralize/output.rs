@@ -9,8 +9,9 @@ use super::input::Input;
 use super::plan::{TetPlan, Wanted};
 use crate::cli::exit::Failure;
 use crate::cli::stop::NOTHING_KEPT;
+use anastomesh_io::OutputSet;
 use anastomesh_io::tetgen::{Extent, MeshFamily};
-use anastomesh_io::volume::{MeshNotes, WriteOptions, write_mesh_to, write_mesh_with};
+use anastomesh_io::volume::{MeshNotes, WriteOptions, stage_mesh, write_mesh_to};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::region::{NamedRegion, label_faces};
 use anastomesh_mesh::second_order::SecondOrder;
@@ -60,14 +61,14 @@ pub struct MeshParts<'a> {
     pub second_order: Option<&'a SecondOrder>,
 }
 
-/// Writes the mesh, in parts on request; returns the files.
-pub fn write(
+/// Writes the mesh under temporary names or to the standard output, in parts on request. Returns the files.
+pub fn stage(
     (target, parts): (&Target, Option<NonZeroUsize>),
     MeshParts { volume, layers, second_order }: MeshParts,
     input: &Input,
     plan: &TetPlan,
     progress: &dyn Progress,
-) -> Result<Vec<PathBuf>, Failure> {
+) -> Result<(Vec<PathBuf>, OutputSet), Failure> {
     let is_labelled = volume.tet_block.iter().any(|&region| region != 0);
     let regions = if is_labelled { NamedRegion::all_numbered(volume.tet_block.iter().copied()) } else { Vec::new() };
     let generator = concat!("anastomesh ", env!("CARGO_PKG_VERSION")).into();
@@ -81,12 +82,12 @@ pub fn write(
     match target {
         Target::File(path) => {
             let options = WriteOptions::default().parts(parts).layers(layers).second_order(second_order);
-            write_mesh_with(&options, path, volume, &notes, progress).map_err(|e| failed(&e))?;
-            Ok(vec![path.clone()])
+            let outputs = stage_mesh(&options, path, volume, &notes, progress).map_err(|e| failed(&e))?;
+            Ok((vec![path.clone()], outputs))
         }
         Target::Family(base) => {
             let family = family(volume, input, plan, is_labelled).progress(progress);
-            family.write(base).map_err(|e| failed(&e))
+            family.stage(base).map_err(|e| failed(&e))
         }
         Target::Stream(format) => {
             let mut out = std::io::stdout().lock();
@@ -96,7 +97,7 @@ pub fn write(
                 Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
                     Err(Failure::input(format!("standard output: {e}")))
                 }
-                _ => Ok(Vec::new()),
+                _ => Ok((Vec::new(), OutputSet::default())),
             }
         }
     }

@@ -1,12 +1,12 @@
 //! Atomic files: a file appears at its path completely or not at all.
 
-use std::ffi::OsStr;
+use super::hidden::{locked, make_hidden, remove_left};
+use super::staged::Staged;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
 /// File under a temporary name in the target's folder; `commit` moves it there, dropping it removes it.
 #[derive(Debug)]
@@ -86,13 +86,14 @@ impl AtomicFile {
     ///
     /// # Errors
     /// The operating system reports an error.
-    pub fn commit(mut self) -> io::Result<()> {
+    pub fn commit(self) -> io::Result<()> {
+        self.stage()?.place()
+    }
+
+    /// Flushes the file, which then only has to be moved to its target.
+    pub(in crate::file) fn stage(mut self) -> io::Result<Staged> {
         self.complete()?;
-        // Windows cannot move an open file.
-        drop(self.lock.take());
-        fs::rename(&self.temporary, &self.target)?;
-        self.temporary = PathBuf::new();
-        Ok(())
+        Ok(Staged::file(std::mem::take(&mut self.temporary), self.target.clone(), self.lock.take()))
     }
 
     /// Starts a background flush, unless one is in progress.
@@ -109,59 +110,6 @@ impl AtomicFile {
     fn open(&mut self) -> io::Result<&mut BufWriter<File>> {
         self.file.as_mut().ok_or_else(|| io::Error::from(io::ErrorKind::BrokenPipe))
     }
-}
-
-/// Creates something under a new hidden name next to `target`.
-pub fn make_hidden<T>(target: &Path, kind: &str, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(PathBuf, T)> {
-    let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
-    let mut attempt = 0_u32;
-    loop {
-        let mut hidden = std::ffi::OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}-{attempt}.{kind}", std::process::id()));
-        let path = target.with_file_name(hidden);
-        match make(&path) {
-            Ok(made) => return Ok((path, made)),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
-            Err(error) => return Err(error),
-        }
-    }
-}
-
-/// Locks a file or folder while it is in use. If locking fails, it cannot be detected as stale either.
-pub fn locked(opened: io::Result<File>) -> Option<File> {
-    opened.ok().filter(|file| file.try_lock().is_ok())
-}
-
-/// Minimum age of stale files: the run of a younger file may not have locked it yet.
-const SETTLED: Duration = Duration::from_secs(10);
-
-/// Removes stale files of killed runs under hidden names next to `target`, which no process locks.
-pub fn remove_left(target: &Path, kind: &str, remove: impl Fn(&Path)) {
-    let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if is_hidden_name(&entry.file_name(), name, kind) && is_left(&entry.path()) {
-            remove(&entry.path());
-        }
-    }
-}
-
-/// True for a name created by [`make_hidden`].
-pub fn is_hidden_name(hidden: &OsStr, name: &str, kind: &str) -> bool {
-    let rest = |hidden: &str| -> Option<bool> {
-        let numbers = hidden.strip_prefix('.')?.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(kind)?;
-        let (process, attempt) = numbers.strip_suffix('.')?.split_once('-')?;
-        Some([process, attempt].iter().all(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
-    };
-    hidden.to_str().and_then(rest).unwrap_or(false)
-}
-
-fn is_left(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
-    let changed = file.metadata().and_then(|data| data.modified()).ok();
-    let is_settled = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= SETTLED);
-    is_settled && file.try_lock().is_ok()
 }
 
 impl Write for AtomicFile {
@@ -199,6 +147,7 @@ impl Drop for AtomicFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn appears_only_when_committed() {

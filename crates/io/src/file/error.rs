@@ -88,6 +88,35 @@ impl<F: Error> FileError<F> {
     }
 }
 
+impl<F: Error> From<OutputError> for FileError<F> {
+    fn from(OutputError { path, source }: OutputError) -> Self {
+        Self::Write { path, source }
+    }
+}
+
+/// Error of [`OutputSet::place`](super::OutputSet::place): an output cannot be moved to its path.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: cannot be written: {source}; {}", path.display(), advice(source))]
+#[non_exhaustive]
+pub struct OutputError {
+    /// Path of the output.
+    pub path: PathBuf,
+    /// Error of the operating system. Its text also names earlier outputs that could not be restored.
+    pub source: io::Error,
+}
+
+impl OutputError {
+    /// Adds a sentence for each output that could not be restored.
+    pub(super) fn with_unrestored(self, unrestored: &[String]) -> Self {
+        if unrestored.is_empty() {
+            return self;
+        }
+        let Self { path, source } = self;
+        let text = format!("{source}; {}", unrestored.join("; "));
+        Self { path, source: io::Error::new(source.kind(), text) }
+    }
+}
+
 fn unrecognised(path: &Path, kind: &str) -> String {
     match path.extension() {
         Some(extension) => format!("unrecognised {kind} extension '.{}'", extension.to_string_lossy()),

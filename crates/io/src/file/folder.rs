@@ -1,11 +1,14 @@
 //! Atomic folders: a folder of files appears completely or not at all.
 
-use super::atomic::{AtomicFile, locked, make_hidden, remove_left};
+use super::atomic::AtomicFile;
+use super::hidden::{locked, make_hidden, remove_left};
+use super::set::OutputSet;
+use super::staged::{Contents, Staged};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-/// Folder under a temporary name next to its target; `commit` moves it there, dropping it removes it.
+/// Folder under a temporary name next to its target. [`OutputSet::place`] moves it there, dropping it removes it.
 #[derive(Debug)]
 pub struct AtomicFolder {
     temporary: PathBuf,
@@ -74,39 +77,21 @@ impl AtomicFolder {
         Ok(path)
     }
 
-    /// Moves the folder to its target and replaces an earlier one. On failure the target is unchanged.
-    pub fn commit(mut self) -> io::Result<()> {
-        Self::ensure_replaceable(&self.target, self.ours)?;
-        let earlier = self.set_aside()?;
-        // Windows cannot move an open folder.
-        drop(self.lock.take());
-        let moved = fs::rename(&self.temporary, &self.target);
-        match (&earlier, &moved) {
-            // Restoring the old folder is best effort.
-            (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
-            (Some(old), Ok(())) => remove_ours(old, self.ours),
-            (None, _) => {}
-        }
-        if moved.is_ok() {
-            self.temporary = PathBuf::new();
-        }
-        moved
+    /// Finishes the folder, which then only has to be moved to its target.
+    pub fn stage(mut self) -> OutputSet {
+        let temporary = std::mem::take(&mut self.temporary);
+        let ours = Box::new(self.ours);
+        OutputSet::one(Staged::folder(temporary, self.target.clone(), self.lock.take(), ours))
+    }
+}
+
+impl Contents for Ours {
+    fn ensure_replaceable(&self, target: &Path) -> io::Result<()> {
+        AtomicFolder::ensure_replaceable(target, *self)
     }
 
-    /// Moves an existing target aside.
-    fn set_aside(&self) -> io::Result<Option<PathBuf>> {
-        if !self.target.exists() {
-            return Ok(None);
-        }
-        // An empty folder reserves the name to which the old one is moved.
-        let (old, ()) = make_hidden(&self.target, "old", |old| fs::create_dir(old))?;
-        match fs::rename(&self.target, &old) {
-            Ok(()) => Ok(Some(old)),
-            Err(error) => {
-                let _ = fs::remove_dir(&old);
-                Err(error)
-            }
-        }
+    fn remove(&self, folder: &Path) {
+        remove_ours(folder, self);
     }
 }
 
@@ -198,7 +183,7 @@ mod tests {
         drop(made(&target, "dropped"));
         assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 0);
         for text in ["first", "second"] {
-            made(&target, text).commit().unwrap();
+            made(&target, text).stage().place().unwrap();
             assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
             assert_eq!(names(&target), ["a", "sub/b", "sub/deep/c"]);
             assert_eq!(fs::read_to_string(target.join("sub/deep/c")).unwrap(), text);
@@ -209,11 +194,11 @@ mod tests {
     fn what_others_have_put_there_stays() {
         let parent = tempfile::tempdir().unwrap();
         let target = parent.path().join("case.foam");
-        made(&target, "first").commit().unwrap();
+        made(&target, "first").stage().place().unwrap();
         let folder = made(&target, "second");
         fs::create_dir(target.join("100")).unwrap();
         fs::write(target.join("100/U"), "result").unwrap();
-        let error = folder.commit().unwrap_err();
+        let error = folder.stage().place().unwrap_err();
         assert!(error.to_string().contains("also holds 100/U"), "{error}");
         assert_eq!(fs::read_to_string(target.join("a")).unwrap(), "first");
         assert!(AtomicFolder::create(&target, ours).is_err());

@@ -3,6 +3,7 @@
 use super::asked::Asked;
 use super::atomic::AtomicFile;
 use super::error::FileError;
+use super::set::OutputSet;
 use anastomesh_mesh::progress::Progress;
 use std::error::Error;
 use std::io::{self, Write};
@@ -27,23 +28,19 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Resul
     file.commit()
 }
 
+/// Writes a file under a temporary name, completely and to the disk.
+pub fn stage_whole(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> io::Result<OutputSet> {
+    let mut file = AtomicFile::create(path)?;
+    write(&mut file)?;
+    OutputSet::of(file)
+}
+
 /// Writes a text file atomically.
 ///
 /// # Errors
 /// The operating system reports an error.
 pub fn write_text(path: &Path, text: &str) -> io::Result<()> {
     write_bytes(path, text.as_bytes())
-}
-
-/// Writes a file with these bytes under a temporary name, completely and to the disk. [`AtomicFile::commit`] moves it to its path.
-///
-/// # Errors
-/// The operating system reports an error.
-pub fn bytes_to_commit(path: &Path, bytes: &[u8]) -> io::Result<AtomicFile> {
-    let mut file = AtomicFile::create(path)?;
-    file.write_all(bytes)?;
-    file.complete()?;
-    Ok(file)
 }
 
 /// Writes a file with these bytes atomically.
@@ -65,22 +62,14 @@ pub fn ensure_text_writable(path: &Path) -> io::Result<()> {
 /// Path of a file and the function that writes its contents.
 pub type Writing<'a> = (PathBuf, &'a dyn Fn(&mut dyn Write) -> io::Result<()>);
 
-/// Writes a set of files: all are complete before the first one appears, in the given order.
-pub fn write_all_whole<F: Error>(files: &[Writing], progress: &dyn Progress) -> Result<(), FileError<F>> {
-    let mut complete = Vec::with_capacity(files.len());
+/// Writes a set of files under temporary names, in the given order.
+pub fn stage_all<F: Error>(files: &[Writing], progress: &dyn Progress) -> Result<OutputSet, FileError<F>> {
+    let mut outputs = OutputSet::default();
     for (path, write) in files {
-        let make = || {
-            let mut file = AtomicFile::create(path)?;
-            write(&mut Asked { out: &mut file, progress })?;
-            file.complete()?;
-            Ok(file)
-        };
-        complete.push(make().map_err(FileError::write(path))?);
+        let staged = stage_whole(path, |out| write(&mut Asked { out, progress }));
+        outputs.append(staged.map_err(FileError::write(path))?);
     }
-    for (file, (path, _)) in complete.into_iter().zip(files) {
-        file.commit().map_err(FileError::write(path))?;
-    }
-    Ok(())
+    Ok(outputs)
 }
 
 /// Checks that all cells refer to existing points.

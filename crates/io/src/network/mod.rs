@@ -57,5 +57,5 @@ pub mod faults {
 pub use format::NetworkFormat;
 pub use read::{read_network, read_network_arrays, read_network_from};
 pub use reduced::{ModelEnd, ReducedFault, ReducedModel, ReducedVessel, Stiffness};
-pub use write::{ensure_network_writable, ensure_tree_writable};
+pub use write::{ensure_network_writable, ensure_tree_writable, stage_network};
 pub use write::{ensure_reduced_writable, write_network, write_reduced, write_tree};

@@ -5,7 +5,7 @@ use super::error::NetworkFileError;
 use super::format::NetworkFormat;
 use super::reduced::{ReducedFault, ReducedModel};
 use super::{npy, sv1d, svzerod, swc, vtp};
-use crate::file::{AtomicFile, write_whole};
+use crate::file::{AtomicFile, OutputError, OutputSet, stage_whole, write_whole};
 use anastomesh_skeleton::Skeleton;
 use std::io::{self, Write};
 use std::path::Path;
@@ -29,11 +29,22 @@ use std::path::Path;
 /// # Errors
 /// The extension is not supported, or the file cannot be written.
 pub fn write_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<(), NetworkFileError> {
-    if is(path, NetworkFormat::Npy) {
-        return npy::write(path, skeleton, arrays).map_err(|source| unwritten(path, source));
-    }
-    ensure_vtp(path)?;
-    write(path, |file| file.write_all(&vtp::bytes_of(skeleton, arrays)?))
+    let placed = stage_network(path, skeleton, arrays)?.place();
+    placed.map_err(|OutputError { path, source }| NetworkFileError::Write { path, source })
+}
+
+/// Writes a network like [`write_network`] under a temporary name. [`OutputSet::place`] moves it to its path.
+///
+/// # Errors
+/// See [`write_network`].
+pub fn stage_network(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> Result<OutputSet, NetworkFileError> {
+    let staged = if is(path, NetworkFormat::Npy) {
+        npy::stage(path, skeleton, arrays)
+    } else {
+        ensure_vtp(path)?;
+        stage_whole(path, |file| file.write_all(&vtp::bytes_of(skeleton, arrays)?))
+    };
+    staged.map_err(|source| unwritten(path, source))
 }
 
 /// Writes a tree whose edges lead away from its root, atomically. Extension `.swc` keeps node radii but no edge radii;

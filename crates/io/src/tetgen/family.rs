@@ -1,7 +1,7 @@
 //! Writer of `TetGen` file families: separate files for points, tetrahedra, faces, edges and neighbours.
 
 use super::error::TetgenFileError;
-use crate::file::{Writing, ensure_sound, extension, write_all_whole};
+use crate::file::{OutputSet, Writing, ensure_sound, extension, stage_all};
 use anastomesh_mesh::adjacency::{Incidence, NONE, tet_adjacency};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::{TET_FACES, TetMesh, VolumeMesh};
@@ -161,12 +161,22 @@ impl<'a> MeshFamily<'a> {
         self
     }
 
-    /// Writes the files `base.node` and so on, atomically; `base` may have any of their extensions. They appear once
-    /// all are complete, `.ele` last. Returns their paths in this order.
+    /// Writes the files `base.node` and so on, together; `base` may have any of their extensions. `.ele` appears last.
+    /// Returns their paths in this order.
     ///
     /// # Errors
     /// `BadMesh` if a cell refers to a missing point, or `Write` with the reason.
     pub fn write(&self, base: &Path) -> Result<Vec<PathBuf>, TetgenFileError> {
+        let (paths, outputs) = self.stage(base)?;
+        outputs.place()?;
+        Ok(paths)
+    }
+
+    /// Writes the files like [`MeshFamily::write`] under temporary names. [`OutputSet::place`] moves them to their paths.
+    ///
+    /// # Errors
+    /// See [`MeshFamily::write`].
+    pub fn stage(&self, base: &Path) -> Result<(Vec<PathBuf>, OutputSet), TetgenFileError> {
         let points = self.mesh.points.len();
         ensure_sound(base, &self.mesh.tets, points)?;
         ensure_sound(base, self.boundary.map_or(&[], |(faces, _)| faces), points)?;
@@ -189,8 +199,8 @@ impl<'a> MeshFamily<'a> {
             files.push((member(base, "neigh"), &neighbors));
         }
         files.push((member(base, "ele"), &tets));
-        write_all_whole(&files, self.progress)?;
-        Ok(files.into_iter().map(|(path, _)| path).collect())
+        let outputs = stage_all(&files, self.progress)?;
+        Ok((files.into_iter().map(|(path, _)| path).collect(), outputs))
     }
 
     /// Given boundary, or all faces with one adjacent tetrahedron, with marker 1.

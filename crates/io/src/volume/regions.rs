@@ -4,7 +4,7 @@ use super::content::MeshNotes;
 use super::error::MeshFileError;
 use super::options::GridOptions;
 use super::vtu::{Grid, SolverIds};
-use crate::file::{Asked, AtomicFile, FileError};
+use crate::file::{Asked, FileError, OutputSet, stage_whole};
 use crate::flow::plain;
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::region::{NamedRegion, RegionMesh, RegionMeshes};
@@ -61,6 +61,22 @@ pub fn write_regions(
     grid: GridOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<PathBuf>, MeshFileError> {
+    let (paths, outputs) = stage_regions(path, mesh, notes, grid, progress)?;
+    outputs.place()?;
+    Ok(paths)
+}
+
+/// Writes files like [`write_regions`] under temporary names. [`OutputSet::place`] moves them to their paths.
+///
+/// # Errors
+/// See [`write_regions`].
+pub fn stage_regions(
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    grid: GridOptions,
+    progress: &dyn Progress,
+) -> Result<(Vec<PathBuf>, OutputSet), MeshFileError> {
     let failed = FileError::write(path);
     let unfit = |text: String| FileError::write(path)(io::Error::new(io::ErrorKind::InvalidInput, text));
     if notes.regions.is_empty() {
@@ -80,32 +96,26 @@ pub fn write_regions(
         None => Cow::Owned(gather(mesh).map_err(failed)?),
     };
     let regions = RegionMeshes::of(&volume, &notes.regions);
-    let mut files = Vec::new();
+    let mut outputs = OutputSet::default();
     for (region, file) in notes.regions.iter().zip(&paths) {
-        let complete = complete(file, &regions.mesh(region), notes, grid, progress);
-        files.push(complete.map_err(FileError::write(file))?);
+        let staged = stage_region(file, &regions.mesh(region), notes, grid, progress);
+        outputs.append(staged.map_err(FileError::write(file))?);
     }
-    for (file, path) in files.into_iter().zip(&paths) {
-        file.commit().map_err(FileError::write(path))?;
-    }
-    Ok(paths)
+    Ok((paths, outputs))
 }
 
-/// File of a region, complete except for its move to the target.
-fn complete(
+/// Writes the file of a region under a temporary name.
+fn stage_region(
     path: &Path,
     region: &RegionMesh,
     notes: &MeshNotes,
     grid: GridOptions,
     progress: &dyn Progress,
-) -> io::Result<AtomicFile> {
+) -> io::Result<OutputSet> {
     let notes = notes_of(region, notes);
-    let mut file = AtomicFile::create(path)?;
     let ids = SolverIds { points: &region.points, tets: &region.tets, faces: &region.face_tets };
-    Grid { solver_ids: Some(ids), ..Grid::of(&region.volume, &notes, grid) }
-        .write(&mut Asked { out: &mut file, progress })?;
-    file.complete()?;
-    Ok(file)
+    let grid = Grid { solver_ids: Some(ids), ..Grid::of(&region.volume, &notes, grid) };
+    stage_whole(path, |out| grid.write(&mut Asked { out, progress }))
 }
 
 /// Notes of a region: only the lumen has the network's loops and terminals.

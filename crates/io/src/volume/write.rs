@@ -8,7 +8,7 @@ use super::parts::PartsError;
 use super::pvtu::{PieceFolder, Pieces};
 use super::vtu::MixedGrid;
 use super::{medit, msh, npy, openfoam, pvtu, second, simvascular, vtu};
-use crate::file::{Asked, AtomicFile, FileError, write_whole};
+use crate::file::{Asked, AtomicFile, FileError, OutputSet, stage_whole};
 use crate::tetgen::MeshFamily;
 use anastomesh_mesh::boundary::{BoundaryPart, BoundarySurface};
 use anastomesh_mesh::progress::Progress;
@@ -77,6 +77,20 @@ pub fn write_mesh_with(
     notes: &MeshNotes,
     progress: &dyn Progress,
 ) -> Result<(), MeshFileError> {
+    Ok(stage_mesh(options, path, mesh, notes, progress)?.place()?)
+}
+
+/// Writes a mesh like [`write_mesh_with`] under temporary names. [`OutputSet::place`] moves its files to their paths.
+///
+/// # Errors
+/// `UnknownFormat`, or `Write` with the reason.
+pub fn stage_mesh(
+    options: &WriteOptions,
+    path: &Path,
+    mesh: &dyn MeshSource,
+    notes: &MeshNotes,
+    progress: &dyn Progress,
+) -> Result<OutputSet, MeshFileError> {
     let grid = options.grid;
     let format = options.format.map_or_else(|| MeshFormat::of(path), Ok)?;
     if options.parts.is_some() && !format.has_parts() {
@@ -91,12 +105,12 @@ pub fn write_mesh_with(
         let fits = if is_plain { second::ensure_fits(mesh, second) } else { Err(no_second_order()) };
         fits.map_err(FileError::write(path))?;
     }
-    let write = || match format {
+    let stage = || match format {
         MeshFormat::Vtu | MeshFormat::Msh | MeshFormat::Msh2 if options.prisms => {
-            write_prisms(path, format, mesh, notes, grid, progress)
+            stage_prisms(path, format, mesh, notes, grid, progress)
         }
         MeshFormat::Pvtu if options.prisms => {
-            pvtu::write_mixed(path, mesh, notes, Pieces { grid, ..Pieces::default() }, progress)
+            pvtu::stage_mixed(path, mesh, notes, Pieces { grid, ..Pieces::default() }, progress)
         }
         _ if options.prisms => Err(io::Error::new(
             io::ErrorKind::Unsupported,
@@ -107,17 +121,17 @@ pub fn write_mesh_with(
             let memory = options.memory.unwrap_or(usual.memory);
             let pieces = Pieces { memory, grid, values: options.values, layers: options.layers, ..usual };
             match options.parts {
-                Some(parts) => pvtu::write_parts(path, mesh, notes, (parts, pieces), progress),
-                None => pvtu::write(path, mesh, notes, pieces, progress),
+                Some(parts) => pvtu::stage_parts(path, mesh, notes, (parts, pieces), progress),
+                None => pvtu::stage(path, mesh, notes, pieces, progress),
             }
         }
         MeshFormat::OpenFoam => {
-            openfoam::write(path, mesh, notes, options.parts, options.remark.unwrap_or(&|_| ()), progress)
+            openfoam::stage(path, mesh, notes, options.parts, options.remark.unwrap_or(&|_| ()), progress)
         }
-        MeshFormat::Npy => npy::write(path, mesh, notes, options, progress),
-        MeshFormat::SimVascular => simvascular::write(path, mesh, options.second_order, notes, progress),
-        MeshFormat::Vtu => write_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, options)),
-        MeshFormat::Msh => write_whole(path, |out| {
+        MeshFormat::Npy => npy::stage(path, mesh, notes, options, progress),
+        MeshFormat::SimVascular => simvascular::stage(path, mesh, options.second_order, notes, progress),
+        MeshFormat::Vtu => stage_whole(path, |out| vtu::write(&mut Asked { out, progress }, mesh, notes, options)),
+        MeshFormat::Msh => stage_whole(path, |out| {
             let out = &mut Asked { out, progress };
             match options.parts {
                 Some(_) if options.values.is_some() => {
@@ -129,17 +143,19 @@ pub fn write_mesh_with(
         }),
         MeshFormat::Msh2 => {
             let beside = (options.values, options.second_order);
-            write_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, beside))
+            stage_whole(path, |out| msh::write_2(&mut Asked { out, progress }, mesh, notes, beside))
         }
-        format => write_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
+        format => stage_whole(path, |out| write_format(&mut Asked { out, progress }, format, mesh, notes)),
     };
     match format {
-        MeshFormat::Tetgen => write_family(path, mesh, progress),
+        MeshFormat::Tetgen => stage_family(path, mesh, progress),
         MeshFormat::Vtu | MeshFormat::Pvtu if grid.tets_alone => {
-            let boundary = complete_boundary(path, mesh, notes, grid, progress)?;
-            write().and_then(|()| boundary.commit()).map_err(FileError::write(path))
+            let boundary = stage_boundary(path, mesh, notes, grid, progress)?;
+            let mut outputs = stage().map_err(FileError::write(path))?;
+            outputs.append(boundary);
+            Ok(outputs)
         }
-        _ => write().map_err(FileError::write(path)),
+        _ => stage().map_err(FileError::write(path)),
     }
 }
 
@@ -151,17 +167,17 @@ fn no_second_order() -> io::Error {
 }
 
 /// Writes the prisms of layers as whole cells. The mesh is held in memory.
-fn write_prisms(
+fn stage_prisms(
     path: &Path,
     format: MeshFormat,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     grid: GridOptions,
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let volume = mesh.whole().map_or_else(|| gather(mesh).map(Cow::Owned), |volume| Ok(Cow::Borrowed(volume)))?;
     let mixed = MixedMesh::of(&volume);
-    write_whole(path, |out| {
+    stage_whole(path, |out| {
         let out = &mut Asked { out, progress };
         match format {
             MeshFormat::Vtu => {
@@ -176,27 +192,24 @@ fn write_prisms(
     })
 }
 
-/// Boundary file beside a tetrahedra-only grid, complete except for its move to the target.
-fn complete_boundary(
+/// Writes the boundary file beside a tetrahedra-only grid.
+fn stage_boundary(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     grid: GridOptions,
     progress: &dyn Progress,
-) -> Result<AtomicFile, MeshFileError> {
+) -> Result<OutputSet, MeshFileError> {
     let beside = boundary_beside(path);
-    let make = || {
-        let mut file = AtomicFile::create(&beside)?;
+    let staged = stage_whole(&beside, |out| {
         let surface = BoundarySurface::new(mesh, BoundaryPart::Whole)?;
-        vtu::write_boundary(&mut Asked { out: &mut file, progress }, &surface, notes, grid)?;
-        file.complete()?;
-        Ok(file)
-    };
-    make().map_err(FileError::write(&beside))
+        vtu::write_boundary(&mut Asked { out, progress }, &surface, notes, grid)
+    });
+    staged.map_err(FileError::write(&beside))
 }
 
 /// Writes a `TetGen` family, which needs the mesh in memory, as neighbours are not found in passes.
-fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> Result<(), MeshFileError> {
+fn stage_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> Result<OutputSet, MeshFileError> {
     let gathered;
     let volume = if let Some(volume) = mesh.whole() {
         volume
@@ -204,8 +217,8 @@ fn write_family(path: &Path, mesh: &dyn MeshSource, progress: &dyn Progress) -> 
         gathered = gather(mesh).map_err(FileError::write(path))?;
         &gathered
     };
-    match MeshFamily::of_volume(volume).progress(progress).write(path) {
-        Ok(_) => Ok(()),
+    match MeshFamily::of_volume(volume).progress(progress).stage(path) {
+        Ok((_, outputs)) => Ok(outputs),
         Err(FileError::BadMesh { path, cell }) => {
             let source = io::Error::new(io::ErrorKind::InvalidInput, format!("cell {cell} names no point"));
             Err(FileError::Write { path, source })

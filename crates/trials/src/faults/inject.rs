@@ -72,6 +72,10 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
             Outcome::Finding { sort, .. } if sort == "no message" && hits_stderr(&fs::read_to_string(&log)?) => {
                 Outcome::Typed { code, message: "none: writing to stderr failed, too".into() }
             }
+            // The fault met a call of the dynamic loader.
+            Outcome::Finding { .. } if run.stderr.contains("error while loading shared libraries") => {
+                Outcome::Typed { code, message: "none: the program was not loaded".into() }
+            }
             outcome => outcome,
         },
         _ => finding("signal", format!("{}: {:?} {}", trial.job.line(), run.ended, run.stderr.trim())),

@@ -8,4 +8,4 @@ mod write;
 pub use read::NpyNetworkError;
 pub(super) use read::{ARRAYS, read};
 pub(super) use write::ensure_writable;
-pub(super) use write::write;
+pub(super) use write::stage;

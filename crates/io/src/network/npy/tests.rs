@@ -1,6 +1,6 @@
 //! Tests of round trips and of inconsistent arrays.
 
-use super::{read, write};
+use super::{read, stage};
 use crate::network::content::{NetworkArray, NetworkOptions};
 use crate::network::format::NetworkFormat;
 use crate::network::{read_network, read_network_from};
@@ -28,7 +28,7 @@ fn a_network_comes_back() {
     let arrays = [NetworkArray::NodeInts("OriginalNode", vec![0, 1, 2, 3])];
     // Twice, to test the replacement of the folder.
     for _ in 0..2 {
-        write(&path, &network, &arrays).unwrap();
+        stage(&path, &network, &arrays).unwrap().place().unwrap();
     }
     assert_eq!(read_network(&path, &NetworkOptions::default()).unwrap().skeleton, network);
     let original = Arrays::read::<std::io::Error>(&path, &["original_node"], None).unwrap();

@@ -1,7 +1,7 @@
 //! Writer of nodes and edges, and of refinement data per node.
 
 use super::read::{EDGE_RADII, EDGES, NODES, RADII};
-use crate::file::AtomicFolder;
+use crate::file::{AtomicFolder, OutputSet};
 use crate::network::content::NetworkArray;
 use crate::npy::{Item, write_array};
 use anastomesh_skeleton::{Edge, Node, Skeleton};
@@ -21,8 +21,8 @@ pub(in crate::network) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a network atomically, with edge radii at both ends.
-pub(in crate::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<()> {
+/// Writes the folder of a network under a temporary name, with edge radii at both ends.
+pub(in crate::network) fn stage(path: &Path, skeleton: &Skeleton, arrays: &[NetworkArray]) -> io::Result<OutputSet> {
     let folder = AtomicFolder::create(path, is_ours)?;
     let Skeleton { nodes, edges, .. } = skeleton;
     let position = |node: &Node| <[f64; 3]>::from(node.position);
@@ -43,7 +43,7 @@ pub(in crate::network) fn write(path: &Path, skeleton: &Skeleton, arrays: &[Netw
             }
         }?;
     }
-    folder.commit()
+    Ok(folder.stage())
 }
 
 fn put<T: Item, const N: usize>(folder: &AtomicFolder, name: &str, rows: &[[T; N]]) -> io::Result<()> {

@@ -10,4 +10,4 @@ mod write;
 
 pub(super) use read::read;
 pub use read::read_mesh_arrays;
-pub(super) use write::{ensure_writable, write};
+pub(super) use write::{ensure_writable, stage};

@@ -1,6 +1,6 @@
 //! Tests of round trips and of inconsistent arrays.
 
-use super::{read, write};
+use super::{read, stage};
 use crate::volume::content::{MeshFile, MeshNotes};
 use crate::volume::fixtures::labelled_tube;
 use crate::volume::in_pieces::InPieces;
@@ -12,7 +12,7 @@ use std::path::Path;
 
 fn written(folder: &Path, mesh: &dyn MeshSource, notes: &MeshNotes) -> std::path::PathBuf {
     let path = folder.join("mesh.npyd");
-    write(&path, mesh, notes, &WriteOptions::default(), &()).unwrap();
+    stage(&path, mesh, notes, &WriteOptions::default(), &()).unwrap().place().unwrap();
     path
 }
 

@@ -2,7 +2,7 @@
 
 use super::names::{ARRAYS, NOTES, POINTS, TET_BLOCKS, TET_LAYER, TETS, TRIANGLE_BLOCKS, TRIANGLE_PATCHES, TRIANGLES};
 use super::notes::Notes;
-use crate::file::{Asked, AtomicFolder};
+use crate::file::{Asked, AtomicFolder, OutputSet};
 use crate::npy::{Item, head};
 use crate::volume::content::MeshNotes;
 use crate::volume::layers::LayerNumbers;
@@ -29,18 +29,18 @@ pub(in crate::volume) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a multi-pass mesh atomically. Corners are `int32`, which most programs expect, or `uint32` for large point
+/// Writes the folder of a multi-pass mesh under a temporary name. Corners are `int32`, which most programs expect, or `uint32` for large point
 /// counts. Tetrahedra have 10 columns and triangles 6 in a second-order mesh. Values become separate arrays: `point_radius`, `tet_branch`, `triangle_branch`.
 ///
 /// # Errors
 /// The operating system or the mesh source fails.
-pub(in crate::volume) fn write(
+pub(in crate::volume) fn stage(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     options: &WriteOptions,
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let folder = AtomicFolder::create(path, is_ours)?;
     let writer = ArrayFolder { folder: &folder, progress };
     let nodes = CellNodes(options.second_order);
@@ -66,7 +66,7 @@ pub(in crate::volume) fn write(
     }
     let text = serde_json::to_string_pretty(&Notes::new(notes, mesh.patches()))?;
     folder.put(NOTES, text.as_bytes())?;
-    folder.commit()
+    Ok(folder.stage())
 }
 
 /// Writer of arrays in a folder.

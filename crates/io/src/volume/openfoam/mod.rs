@@ -30,7 +30,7 @@ mod zones_tests;
 
 use super::content::MeshNotes;
 use super::parts::{Partition, PartsError};
-use crate::file::AtomicFolder;
+use crate::file::{AtomicFolder, OutputSet};
 use crate::flow::{Flow, Role};
 use anastomesh_mesh::faces::Faces;
 use anastomesh_mesh::progress::Progress;
@@ -92,7 +92,7 @@ fn is_ours(name: &str) -> bool {
         || in_folder(inflow::VELOCITIES)
 }
 
-/// Writes a case atomically. A mesh with regions becomes cell zones and a case of diffusion ([`zones`]). Solver results in an existing folder are an error. `remark` receives each reason why the
+/// Writes a case under a temporary name. A mesh with regions becomes cell zones and a case of diffusion ([`zones`]). Solver results in an existing folder are an error. `remark` receives each reason why the
 /// case is not expected to converge.
 ///
 /// Tetrahedra are read twice, points twice, the boundary three times. A mesh with layers is read once more. Memory holds
@@ -105,14 +105,14 @@ fn is_ours(name: &str) -> bool {
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary. `PartsError`
 /// if there are more parts than cells, or the mesh has regions.
-pub(super) fn write(
+pub(super) fn stage(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     parts: Option<NonZeroUsize>,
     remark: &dyn Fn(&str),
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let folder = AtomicFolder::create(path, is_ours)?;
     if !notes.regions.is_empty() {
         if parts.is_some() {
@@ -121,7 +121,7 @@ pub(super) fn write(
         }
         zones::write(&folder, mesh, notes, remark, progress)?;
         folder.put(FOR_PARAVIEW, b"")?;
-        return folder.commit();
+        return Ok(folder.stage());
     }
     let cells = Cells::of(mesh)?;
     let cells = cells.as_ref();
@@ -148,7 +148,7 @@ pub(super) fn write(
     let inlets = if inflow::is_mapped(flow) { InletFaces::of(mesh, &faces, cells)? } else { BTreeMap::new() };
     inflow::write(&folder, &boundary, flow, &inlets)?;
     folder.put(FOR_PARAVIEW, b"")?;
-    folder.commit()
+    Ok(folder.stage())
 }
 
 /// Highest Reynolds number of the inlets, by mean velocity and diameter; of their peak flow rate in pulsatile flow.

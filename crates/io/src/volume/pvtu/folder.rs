@@ -1,11 +1,11 @@
 //! Atomic piece folder: appears completely, together with its index file, or not at all.
 
-use crate::file::{AtomicFile, is_hidden_name, locked, make_hidden, remove_left};
+use crate::file::{AtomicFile, Contents, OutputSet, Staged, is_hidden_name, locked, make_hidden, remove_left};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Folder under a temporary name next to its target; `commit` moves it there, dropping it removes it.
+/// Folder under a temporary name next to its target; [`OutputSet::place`] moves it there, dropping it removes it.
 #[derive(Debug)]
 pub(in crate::volume) struct PieceFolder {
     temporary: PathBuf,
@@ -64,39 +64,31 @@ impl PieceFolder {
         format!("{}/{}", self.stem, piece_name(&self.stem, number))
     }
 
-    /// Moves the folder and its index to their targets and replaces earlier ones. On failure both are unchanged.
-    pub(super) fn commit(mut self, mut index: AtomicFile, path: &Path) -> io::Result<()> {
-        index.complete()?;
-        Self::ensure_replaceable(path)?;
-        // An empty folder reserves the name to which the earlier one is moved.
-        let earlier = if self.target.exists() {
-            Some(make_hidden(&self.target, "old", |old| fs::create_dir(old))?.0)
-        } else {
-            None
-        };
-        if let Some(old) = &earlier
-            && let Err(error) = fs::rename(&self.target, old)
-        {
-            let _ = fs::remove_dir(old);
-            return Err(error);
-        }
-        drop(self.lock.take());
-        let moved = fs::rename(&self.temporary, &self.target);
-        let done = moved.and_then(|()| {
-            index.commit().inspect_err(|_| {
-                let _ = fs::rename(&self.target, &self.temporary);
-            })
-        });
-        match (&earlier, &done) {
-            // Restoring the old folder is best effort.
-            (Some(old), Err(_)) => drop(fs::rename(old, &self.target)),
-            (Some(old), Ok(())) => remove_pieces(old, &self.stem),
-            (None, _) => {}
-        }
-        if done.is_ok() {
-            self.temporary = PathBuf::new();
-        }
-        done
+    /// Finishes the folder and its index, which then only have to be moved to their targets.
+    pub(super) fn stage(mut self, index: AtomicFile, path: &Path) -> io::Result<OutputSet> {
+        let contents = PiecesOf { index: path.to_path_buf(), stem: self.stem.clone() };
+        let temporary = std::mem::take(&mut self.temporary);
+        let folder = Staged::folder(temporary, self.target.clone(), self.lock.take(), Box::new(contents));
+        let mut outputs = OutputSet::one(folder);
+        outputs.add(index)?;
+        Ok(outputs)
+    }
+}
+
+/// Pieces of an index.
+#[derive(Debug)]
+struct PiecesOf {
+    index: PathBuf,
+    stem: String,
+}
+
+impl Contents for PiecesOf {
+    fn ensure_replaceable(&self, _: &Path) -> io::Result<()> {
+        PieceFolder::ensure_replaceable(&self.index)
+    }
+
+    fn remove(&self, folder: &Path) {
+        remove_pieces(folder, &self.stem);
     }
 }
 
@@ -164,7 +156,7 @@ mod tests {
         for text in ["first", "second"] {
             let (folder, file) = made(&index, text);
             assert_eq!(folder.source(0), "a.b/a.b_0000.vtu");
-            folder.commit(file, &index).unwrap();
+            folder.stage(file, &index).unwrap().place().unwrap();
             assert_eq!(names(parent.path()), ["a.b", "a.b.pvtu"]);
             assert_eq!(fs::read_to_string(parent.path().join("a.b/a.b_0000.vtu")).unwrap(), text);
         }
@@ -175,11 +167,11 @@ mod tests {
         let parent = tempfile::tempdir().unwrap();
         let index = parent.path().join("out.pvtu");
         let (folder, file) = made(&index, "first");
-        folder.commit(file, &index).unwrap();
+        folder.stage(file, &index).unwrap().place().unwrap();
         let (folder, file) = made(&index, "second");
         fs::remove_file(&index).unwrap();
         fs::create_dir(&index).unwrap();
-        assert!(folder.commit(file, &index).is_err());
+        assert!(folder.stage(file, &index).unwrap().place().is_err());
         assert_eq!(names(parent.path()), ["out", "out.pvtu"]);
         assert_eq!(fs::read_to_string(parent.path().join("out/out_0000.vtu")).unwrap(), "first");
     }

@@ -4,7 +4,7 @@ use super::folder::PieceFolder;
 use super::order::Reordered;
 use super::plan::Plan;
 use super::write::{Extent, Pieces, write_index};
-use crate::file::{Asked, AtomicFile, write_whole};
+use crate::file::{Asked, AtomicFile, OutputSet, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::vtu::{LAYER, MixedGrid, REGION, write_mixed as write_grid};
 use anastomesh_mesh::bits::Bits;
@@ -14,17 +14,17 @@ use anastomesh_mesh::stacks::{MixedCell, MixedFace, MixedMesh};
 use std::io;
 use std::path::Path;
 
-/// Writes a mesh with mixed cells in pieces, like [`write`](super::write). The mesh is held in memory.
+/// Writes a mesh with mixed cells in pieces, like [`stage`](super::stage). The mesh is held in memory.
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point.
-pub(in crate::volume) fn write_mixed(
+pub(in crate::volume) fn stage_mixed(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     pieces: Pieces,
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
     let volume = gather(&Reordered::along_the_tree(mesh)?)?;
@@ -70,5 +70,5 @@ pub(in crate::volume) fn write_mixed(
     }
     let labels = if notes.regions.is_empty() { &[LAYER][..] } else { &[LAYER, REGION] };
     write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, labels)?;
-    folder.commit(index, path)
+    folder.stage(index, path)
 }

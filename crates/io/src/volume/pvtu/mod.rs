@@ -19,7 +19,7 @@ mod write;
 
 pub use error::PvtuFault;
 pub(super) use folder::PieceFolder;
-pub(super) use mixed::write_mixed;
-pub(super) use parts::write_parts;
+pub(super) use mixed::stage_mixed;
+pub(super) use parts::stage_parts;
 pub(super) use read::read;
-pub(super) use write::{Pieces, write};
+pub(super) use write::{Pieces, stage};

@@ -2,7 +2,7 @@
 
 use super::folder::PieceFolder;
 use super::write::{Extent, Pieces, bytes_of_piece, write_index};
-use crate::file::{Asked, AtomicFile, write_whole};
+use crate::file::{Asked, AtomicFile, OutputSet, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::parts::{PartReader, PartsError};
 use crate::volume::vtu::{Grid, PieceArrays, REGION};
@@ -17,7 +17,7 @@ use std::path::Path;
 /// Value of `vtkGhostType` for copies of cells and points of other pieces.
 const DUPLICATE: u8 = 1;
 
-/// Writes a mesh in `parts` balanced pieces, like [`write`](super::write). Each has a layer of ghost cells: copies of the
+/// Writes a mesh in `parts` balanced pieces, like [`stage`](super::stage). Each has a layer of ghost cells: copies of the
 /// tetrahedra of others that share a point with it. `vtkGhostType` marks them, and the points of which another piece
 /// has the original. Cells have the numbers `GlobalCellIds`, tetrahedra before boundary faces.
 ///
@@ -26,13 +26,13 @@ const DUPLICATE: u8 = 1;
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point. `PartsError` if there are
 /// more parts than cells, or a part of a mesh that is not in memory exceeds `pieces.memory`.
-pub(in crate::volume) fn write_parts(
+pub(in crate::volume) fn stage_parts(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     (parts, pieces): (NonZeroUsize, Pieces),
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
     let reader = PartReader::of(mesh, parts)?;
@@ -62,7 +62,7 @@ pub(in crate::volume) fn write_parts(
     }
     let labels = if notes.regions.is_empty() { &[][..] } else { &[REGION] };
     write_index(&mut index, Extent { pieces: parts.get(), has_ghosts: true }, &folder, pieces, labels)?;
-    folder.commit(index, path)
+    folder.stage(index, path)
 }
 
 /// Piece with local numbers of points.

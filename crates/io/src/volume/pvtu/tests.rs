@@ -1,8 +1,8 @@
 //! Tests of round trips for any partition, and of preserved files after failures.
 
 use super::error::PvtuFault;
-use super::mixed::write_mixed;
-use super::write::{Pieces, write};
+use super::mixed::stage_mixed;
+use super::write::{Pieces, stage};
 use crate::volume::error::MeshFault;
 use crate::volume::fixtures::{labelled_tube, slab};
 use crate::volume::in_pieces::InPieces;
@@ -75,7 +75,10 @@ fn what_is_written_is_read() {
     let (volume, notes) = tube(40, 300);
     let tets = volume.mesh.tets.len();
     for (limit, memory, count) in [(1000, 0, tets.div_ceil(900)), (600, 1 << 16, tets.div_ceil(600)), (tets, 0, 1)] {
-        write(&path, &volume, &notes, Pieces { tets: limit, memory, ..Pieces::default() }, &()).unwrap();
+        stage(&path, &volume, &notes, Pieces { tets: limit, memory, ..Pieces::default() }, &())
+            .unwrap()
+            .place()
+            .unwrap();
         assert_eq!(fs::read_dir(folder.path().join("a tube & more")).unwrap().count(), count);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
         let back = read_mesh(&path).unwrap();
@@ -93,8 +96,10 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
         let path = folder.path().join("tube.pvtu");
         let pieces = Pieces { tets: 400, memory, ..Pieces::default() };
         match sizes {
-            Some(sizes) => write(&path, &InPieces { volume: &volume, sizes }, &notes, pieces, &()).unwrap(),
-            None => write(&path, &volume, &notes, pieces, &()).unwrap(),
+            Some(sizes) => {
+                stage(&path, &InPieces { volume: &volume, sizes }, &notes, pieces, &()).unwrap().place().unwrap()
+            }
+            None => stage(&path, &volume, &notes, pieces, &()).unwrap().place().unwrap(),
         }
         let named = files(folder.path()).into_iter();
         named.map(|(name, bytes)| (name[folder.path().as_os_str().len()..].to_owned(), bytes)).collect::<Vec<_>>()
@@ -111,7 +116,9 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
 fn pieces_have_the_boundary_of_their_blocks() {
     let folder = tempfile::tempdir().unwrap();
     let (volume, notes) = tube(30, 200);
-    write(&folder.path().join("t.pvtu"), &volume, &notes, Pieces { tets: 450, memory: 0, ..Pieces::default() }, &())
+    stage(&folder.path().join("t.pvtu"), &volume, &notes, Pieces { tets: 450, memory: 0, ..Pieces::default() }, &())
+        .unwrap()
+        .place()
         .unwrap();
     for entry in fs::read_dir(folder.path().join("t")).unwrap() {
         let piece = read_mesh(&entry.unwrap().path()).unwrap();
@@ -131,7 +138,10 @@ fn odd_meshes() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("odd.pvtu");
     let back = |volume: &VolumeMesh| {
-        write(&path, volume, &MeshNotes::default(), Pieces { tets: 100, memory: 0, ..Pieces::default() }, &()).unwrap();
+        stage(&path, volume, &MeshNotes::default(), Pieces { tets: 100, memory: 0, ..Pieces::default() }, &())
+            .unwrap()
+            .place()
+            .unwrap();
         in_order(read_mesh(&path).unwrap().volume)
     };
     assert_eq!(back(&VolumeMesh::default()), VolumeMesh::default());
@@ -187,7 +197,7 @@ fn broken_pieces_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.pvtu");
     let (volume, notes) = tube(6, 100);
-    write(&path, &volume, &notes, Pieces { tets: 300, memory: 0, ..Pieces::default() }, &()).unwrap();
+    stage(&path, &volume, &notes, Pieces { tets: 300, memory: 0, ..Pieces::default() }, &()).unwrap().place().unwrap();
     let piece = folder.path().join("out/out_0001.vtu");
     let sound = fs::read(&piece).unwrap();
     fs::write(&piece, &sound[..sound.len() / 2]).unwrap();
@@ -251,7 +261,10 @@ fn prisms_in_several_pieces_are_split_alike_on_both_sides() {
     let whole = MixedMesh::of(&volume);
     assert!(whole.cells.iter().all(|cell| cell.vertices().len() == 6));
     for (tets, count) in [(1, 4), (2, 2), (9, 1)] {
-        write_mixed(&path, &volume, &MeshNotes::default(), Pieces { tets, ..Pieces::default() }, &()).unwrap();
+        stage_mixed(&path, &volume, &MeshNotes::default(), Pieces { tets, ..Pieces::default() }, &())
+            .unwrap()
+            .place()
+            .unwrap();
         assert_eq!(fs::read_dir(folder.path().join("prisms")).unwrap().count(), count);
         let read = read_mesh(&path).unwrap().volume;
         assert_eq!(read.mesh.points, volume.mesh.points);

@@ -3,7 +3,7 @@
 use super::folder::PieceFolder;
 use super::order::Reordered;
 use super::plan::Plan;
-use crate::file::{Asked, AtomicFile, write_whole};
+use crate::file::{Asked, AtomicFile, OutputSet, write_whole};
 use crate::volume::content::MeshNotes;
 use crate::volume::layers::LayerNumbers;
 use crate::volume::options::GridOptions;
@@ -38,7 +38,7 @@ impl Default for Pieces<'_> {
     }
 }
 
-/// Writes a mesh in pieces to `path` and the folder with its name minus the extension, atomically. Pieces of an earlier
+/// Writes a mesh in pieces for `path` and the folder with its name minus the extension. Pieces of an earlier
 /// mesh are replaced; a folder with other files is not.
 ///
 /// Separate blocks are ordered so that pieces cut few joints. For a multi-pass source, `pieces.memory` limits the
@@ -46,13 +46,13 @@ impl Default for Pieces<'_> {
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if a cell refers to a missing point.
-pub(in crate::volume) fn write(
+pub(in crate::volume) fn stage(
     path: &Path,
     mesh: &dyn MeshSource,
     notes: &MeshNotes,
     pieces: Pieces,
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let mut index = AtomicFile::create(path)?;
     let folder = PieceFolder::create(path)?;
     let mesh: &dyn MeshSource = &Reordered::along_the_tree(mesh)?;
@@ -77,7 +77,7 @@ pub(in crate::volume) fn write(
     let of_regions = (!notes.regions.is_empty()).then_some(REGION);
     let labels: Vec<&str> = of_regions.into_iter().chain(layers.map(|_| LAYER)).collect();
     write_index(&mut index, Extent { pieces: plan.ends.len(), has_ghosts: false }, &folder, pieces, &labels)?;
-    folder.commit(index, path)
+    folder.stage(index, path)
 }
 
 /// Approximate memory of a piece: its share of points and faces, plus half for those on its rim.

@@ -1,6 +1,6 @@
 //! Tests of solver input: structure and numbers.
 
-use super::write;
+use super::stage;
 use crate::flow::{CapFlow, Flow, OutletModel, Profile, Transient, Waveform};
 use crate::volume::fixtures::labelled_tube;
 use crate::volume::{MeshNotes, read_mesh};
@@ -60,7 +60,7 @@ fn flow(outlet: OutletModel, waveform: Option<Waveform>) -> Flow {
 /// Folder of a case.
 fn written(folder: &Path, flow: Flow) -> PathBuf {
     let path = folder.join("case.svmesh");
-    write(&path, &tube(), None, &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap();
+    stage(&path, &tube(), None, &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap().place().unwrap();
     path
 }
 
@@ -270,7 +270,10 @@ fn second_order_elements_have_ten_nodes_and_their_velocities_the_flow_rate() {
     let second = SecondOrder::curved(&volume).0;
     let mut flow = flow(OutletModel::default(), Some(pulse())).profile(Profile::Womersley);
     flow.transient = flow.transient.map(|time| time.ramp(0.0));
-    write(&path, &volume, Some(&second), &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &()).unwrap();
+    stage(&path, &volume, Some(&second), &MeshNotes { flow: Some(flow), ..MeshNotes::default() }, &())
+        .unwrap()
+        .place()
+        .unwrap();
     let all = elements(&path);
     assert_eq!(all["Add_equation fluid/Use_taylor_hood_type_basis"], "true");
     assert_eq!(read_mesh(&path.join("mesh-complete.mesh.vtu")).unwrap().second_order.as_ref(), Some(&second));

@@ -21,7 +21,7 @@ mod tests;
 
 use super::content::MeshNotes;
 use super::second::{CellNodes, WithMiddles};
-use crate::file::AtomicFolder;
+use crate::file::{AtomicFolder, OutputSet};
 use crate::flow::plain;
 use crate::patches::usual_name;
 use anastomesh_mesh::WALL;
@@ -42,20 +42,20 @@ pub(super) fn ensure_writable(path: &Path) -> io::Result<()> {
     AtomicFolder::create(path, is_ours).map(drop)
 }
 
-/// Writes a folder atomically.
+/// Writes a folder under a temporary name.
 ///
 /// The boundary is stored in a temporary file, with the tetrahedron at each face, and read from it. Memory holds the
 /// faces of inlets and outlets, those between parts of the mesh, and a bit per point.
 ///
 /// # Errors
 /// The operating system or the mesh source fails; `InvalidData` if the labelled faces are not its boundary.
-pub(super) fn write(
+pub(super) fn stage(
     path: &Path,
     mesh: &dyn MeshSource,
     second: Option<&SecondOrder>,
     notes: &MeshNotes,
     progress: &dyn Progress,
-) -> io::Result<()> {
+) -> io::Result<OutputSet> {
     let folder = AtomicFolder::create(path, is_ours)?;
     ensure_countable(mesh, CellNodes(second))?;
     if !notes.regions.is_empty() {
@@ -64,7 +64,7 @@ pub(super) fn write(
             return Err(io::Error::new(io::ErrorKind::Unsupported, text));
         }
         regions::write(&folder, path, mesh, notes, progress)?;
-        return folder.commit();
+        return Ok(folder.stage());
     }
     let (spool, nodes) = (Spool::of(mesh, path, progress)?, CellNodes(second));
     let with_middles = second.map(|second| WithMiddles { mesh, second });
@@ -95,5 +95,5 @@ pub(super) fn write(
         ask(progress)?;
     }
     folder.put(SOLVER, solver::text(mesh.patches(), flow, &steps, second.is_some()).as_bytes())?;
-    folder.commit()
+    Ok(folder.stage())
 }
