@@ -177,6 +177,19 @@ fn surfaces_and_networks() {
         let (text, code) = run(dir, &["tube.vtu", "--surface", surface]);
         assert_eq!(code, Some(0), "{surface}: {text}");
     }
+    // Binary STL has numbers of 32 bits.
+    let mut cube = cuboid([1, 1, 1]);
+    label(&mut cube, &|_| 1);
+    write(dir, "cube.vtu", vtu(&cube));
+    let mut binary_stl = [&[b' '; 80][..], &(cube.triangles.len() as u32).to_le_bytes()].concat();
+    for t in &cube.triangles {
+        let corners = t.map(|v| cube.points[v as usize].map(|x| x as f32));
+        let numbers = [[0.0; 3], corners[0], corners[1], corners[2]];
+        binary_stl.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+        binary_stl.extend([0; 2]);
+    }
+    write(dir, "b.stl", binary_stl);
+    assert_eq!(run(dir, &["cube.vtu", "--surface", "b.stl"]).1, Some(0));
     write(dir, "other.off", format!("OFF\n3 1 0\n{a}\n{b}\n0.1 0.2 0.3\n3 0 1 2\n"));
     assert_eq!(run(dir, &["tube.vtu", "--surface", "other.off"]).1, Some(1));
     write(dir, "cut.ply", &binary[..binary.len() - 3]);

@@ -112,6 +112,20 @@ fn interfaces_are_compared() {
     assert_eq!(broken(without), [""; 0]);
 }
 
+/// Regions of a complex may touch themselves, those of a network may not.
+#[test]
+fn a_region_that_touches_itself_at_an_edge_is_sound_without_an_expectation() {
+    let mut mesh = lattice([2, 2, 1], false, &|p| p.map(f64::from), &|[i, j, _]| i == j);
+    mesh.tet_regions = vec![1; mesh.tets.len()];
+    mesh.regions = vec![(1, "lumen".into())];
+    let violated = |mesh: &Mesh| {
+        verify(mesh, &Demands::default()).violated().map(|outcome| outcome.condition.name()).collect::<Vec<_>>()
+    };
+    assert!(violated(&mesh).is_empty(), "{:?}", violated(&mesh));
+    mesh.expected_loops = Some(vec![0, 0]);
+    assert!(violated(&mesh).contains(&"boundary_edges"), "{:?}", violated(&mesh));
+}
+
 #[test]
 fn regions_are_named_and_sound() {
     assert_eq!(broken(|m| m.regions.push((3, "tissue".into()))), ["regions_named"]);
