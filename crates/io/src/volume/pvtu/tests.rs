@@ -97,7 +97,7 @@ fn neither_memory_nor_the_pieces_that_are_read_make_a_difference() {
         let pieces = Pieces { tets: 400, memory, ..Pieces::default() };
         match sizes {
             Some(sizes) => {
-                stage(&path, &InPieces { volume: &volume, sizes }, &notes, pieces, &()).unwrap().place().unwrap()
+                stage(&path, &InPieces { volume: &volume, sizes }, &notes, pieces, &()).unwrap().place().unwrap();
             }
             None => stage(&path, &volume, &notes, pieces, &()).unwrap().place().unwrap(),
         }
