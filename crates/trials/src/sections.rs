@@ -103,8 +103,9 @@ fn coverage(figures: &[&Value]) -> String {
     }
     let days: Vec<&str> = figures.iter().map(|figure| day(figure)).collect();
     let mut out = format!(
-        "## Coverage\n\nLines that the tests of the workspace run, on {}. A row in bold is a crate. The row of its folder `src` has the \
-         files\ndirectly in it.\n\nCommand: `.ci/long coverage`\n\n| part | lines | covered | % |\n|---|---|---|---|\n",
+        "## Coverage\n\nLines that the tests of the crates in the table run, on {}. A row in bold is a crate. The row of its folder `src` \
+         has the files\ndirectly in it.\n\nCommand: `.ci/long coverage` for all crates, or \
+         `PACKAGES=\"anastomesh-mesh anastomesh-tet\" .ci/long coverage`\n\n| part | lines | covered | % |\n|---|---|---|---|\n",
         days.join(", ")
     );
     for ((name, folder), [lines, covered]) in rows {
