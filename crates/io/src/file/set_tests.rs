@@ -1,6 +1,8 @@
 //! Tests of sets of outputs whose moves fail.
 
 use super::OutputSet;
+use crate::file::hidden::is_hidden_name;
+use crate::file::staged::{Contents, Staged};
 use crate::file::{AtomicFile, AtomicFolder};
 use std::fs::{self, File};
 use std::io;
@@ -140,4 +142,31 @@ fn an_earlier_file_that_cannot_be_restored_is_named_and_kept() {
     // The other two are as they were, but no earlier version of the last one was kept.
     assert_eq!(fs::read_to_string(table).unwrap(), "first");
     assert!(!page.exists());
+}
+
+/// Files of a folder that cannot be removed.
+#[derive(Debug)]
+struct Stuck;
+
+impl Contents for Stuck {
+    fn ensure_replaceable(&self, _: &Path) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn remove(&self, _: &Path) {}
+}
+
+#[test]
+fn an_earlier_folder_that_cannot_be_removed_is_left_to_later_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let [target, temporary] = ["a.foam", "new"].map(|name| folder.path().join(name));
+    for (path, text) in [(&target, "first"), (&temporary, "second")] {
+        fs::create_dir(path).unwrap();
+        fs::write(path.join("points"), text).unwrap();
+    }
+    OutputSet::one(Staged::folder(temporary, target.clone(), None, Box::new(Stuck))).place().unwrap();
+    assert_eq!(fs::read_to_string(target.join("points")).unwrap(), "second");
+    let names: Vec<String> = state(folder.path()).into_iter().map(|(name, _)| name).collect();
+    let hidden: Vec<&String> = names.iter().filter(|name| name.starts_with('.') && !name.contains('/')).collect();
+    assert!(hidden.len() == 1 && is_hidden_name(hidden[0].as_ref(), "a.foam", "part"), "{names:?}");
 }

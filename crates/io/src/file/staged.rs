@@ -147,13 +147,18 @@ impl Staged {
         Ok(())
     }
 
-    /// Removes the earlier output, or its hidden name if it is still at the target. Failures are ignored.
+    /// Removes the earlier output, or its hidden name if it is still at the target. If that fails, a later run does so.
     pub fn drop_earlier(&mut self) {
         let Some(old) = self.earlier.take() else { return };
         match &self.contents {
             Some(contents) if self.position == Position::Placed => contents.remove(&old),
-            Some(_) => drop(fs::remove_dir(old)),
-            None => drop(fs::remove_file(old)),
+            Some(_) => drop(fs::remove_dir(&old)),
+            None => drop(fs::remove_file(&old)),
+        }
+        if is_there(&old) {
+            // The extension marks it as stale for `remove_left`.
+            let unused = |stale: &Path| if is_there(stale) { Err(io::ErrorKind::AlreadyExists.into()) } else { Ok(()) };
+            let _ = make_hidden(&self.target, "part", |stale| unused(stale).and_then(|()| fs::rename(&old, stale)));
         }
     }
 
@@ -165,6 +170,11 @@ impl Staged {
             None => format!("{target} is new and could not be removed"),
         }
     }
+}
+
+/// True for a file or folder, and for a broken symbolic link.
+fn is_there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
 }
 
 /// Exchanges the names of two folders in one step.

@@ -66,7 +66,8 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
     command.args(["-e", &format!("inject={name}:error={error}:when={}", call.number)]);
     command.arg(trial.mesher).args(trial.job.arguments());
     let run = run_command(command, trial.folder, LIMITS)?;
-    let may_leave = ["unlink", "rmdir"].contains(&name);
+    // Folders are opened to list what is to be removed.
+    let may_leave = ["unlink", "rmdir"].contains(&name) || call.text.contains("O_DIRECTORY");
     let outcome = match run.ended {
         Ended::Code(code) => match trial.after_code(code, &run.stderr, may_leave)? {
             Outcome::Finding { sort, .. } if sort == "no message" && hits_stderr(&fs::read_to_string(&log)?) => {
