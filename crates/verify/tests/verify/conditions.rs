@@ -1,7 +1,7 @@
 //! Every condition is found, and named, on a mesh that is broken in one way.
 
 use super::common::{add, cuboid, label, lattice, torus, tube};
-use anastomesh_verify::{Demands, Mesh, Report, verify};
+use anastomesh_verify::{Demands, Mesh, Report, read_network, verify};
 
 fn report(mesh: &Mesh) -> Report {
     verify(mesh, &Demands::default())
@@ -296,4 +296,24 @@ fn surfaces_and_networks_are_compared() {
     other[4][1][0] += f64::EPSILON;
     let report = with(other);
     assert_eq!(report.to_string(), "NOT valid: surface_kept: triangles of the surface missing in the mesh: 1 (4)");
+}
+
+/// Vertices within the caps of a mesh without labels are not on the wall.
+#[test]
+fn caps_without_labels_are_not_compared_with_the_vessels() {
+    let mut mesh = tube();
+    (mesh.triangles, mesh.labels) = Default::default();
+    (mesh.expected_loops, mesh.expected_terminals) = Default::default();
+    mesh.patches.clear();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("net.swc");
+    std::fs::write(&file, "1 1 0 0 0 1 -1\n2 1 0 0 3 1 1\n").expect("a file");
+    let far = |mesh: &Mesh| {
+        let vessels = read_network(&file).expect("a network");
+        let report = verify(mesh, &Demands { surface: None, network: Some((vessels, 1e-9)) });
+        report.violated().find(|outcome| outcome.condition.name() == "wall_distance").map(|outcome| outcome.count)
+    };
+    assert_eq!(far(&mesh), None);
+    mesh.caps.pop();
+    assert_eq!(far(&mesh), Some(1));
 }

@@ -156,6 +156,11 @@ fn surfaces_and_networks() {
         Name='offsets' format='ascii'>2</DataArray></Lines></Piece></PolyData></VTKFile>";
     write(dir, "net.vtp", lines);
     assert_eq!(run(dir, &["tube.vtu", "--network", "net.vtp", "--tolerance", "1e-9"]).1, Some(0));
+    // A taper from 1 to 0.8 has the radii 0.93 and 0.87 where the tube has vertices.
+    write(dir, "taper.vtp", lines.replace("1 1", "1 0.8"));
+    for (tolerance, code) in [("0.16", 0), ("0.14", 1)] {
+        assert_eq!(run(dir, &["tube.vtu", "--network", "taper.vtp", "--tolerance", tolerance]).1, Some(code));
+    }
 
     // A triangle of the cap at z = 0, in all formats of surfaces.
     let p = &tube().points;
