@@ -38,7 +38,8 @@ fn mutation(figures: &[&Value]) -> String {
     let mut out = String::from(
         "## Mutation\n\n\
          Each mutant is a small change of the sources. The tests should fail with it. The score is the share of mutants with which they \
-         fail or\ntake too long. Mutants that do not compile are not counted. A score of a sample has an interval of 95 % confidence.\n\n\
+         fail or\ntake too long. Mutants that do not compile are not counted. A score of a sample has an interval of 95 % confidence.\n\
+         If tests were added for missed mutants of a sample, its score is above that of the other mutants.\n\n\
          Command: `PACKAGE=anastomesh-verify SHARD=0/1 .ci/long mutants`\n\n\
          | part | tried | of | caught | missed | timeouts | unviable | score, % | day |\n|---|---|---|---|---|---|---|---|---|\n",
     );
