@@ -8,6 +8,7 @@ use crate::random::Random;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// System calls on files with the errors to return.
@@ -66,15 +67,17 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
     command.args(["-e", &format!("inject={name}:error={error}:when={}", call.number)]);
     command.arg(trial.mesher).args(trial.job.arguments());
     let run = run_command(command, trial.folder, LIMITS)?;
-    // Folders are opened to list what is to be removed.
-    let may_leave = ["unlink", "rmdir"].contains(&name) || call.text.contains("O_DIRECTORY");
+    // After a success, folders are opened to list what is to be removed.
+    let may_leave = |code| ["unlink", "rmdir"].contains(&name) || code == 0 && call.text.contains("O_DIRECTORY");
     let outcome = match run.ended {
-        Ended::Code(code) => match trial.after_code(code, &run.stderr, may_leave)? {
+        Ended::Code(code) => match trial.after_code(code, &run.stderr, may_leave(code))? {
             Outcome::Finding { sort, .. } if sort == "no message" && hits_stderr(&fs::read_to_string(&log)?) => {
                 Outcome::Typed { code, message: "none: writing to stderr failed, too".into() }
             }
             // The fault met a call of the dynamic loader.
-            Outcome::Finding { .. } if run.stderr.contains("error while loading shared libraries") => {
+            Outcome::Finding { sort, .. }
+                if sort == "exit code" && run.stderr.contains("error while loading shared libraries") =>
+            {
                 Outcome::Typed { code, message: "none: the program was not loaded".into() }
             }
             outcome => outcome,
@@ -82,10 +85,19 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
         _ => finding("signal", format!("{}: {:?} {}", trial.job.line(), run.ended, run.stderr.trim())),
     };
     let outcome = match trial.again(outcome)? {
-        Outcome::Finding { sort, text } => Outcome::Finding { sort, text: format!("{error} of {}: {text}", call.text) },
+        Outcome::Finding { sort, text } => {
+            let call = without_folder(&call.text, &trial.folder.canonicalize()?);
+            Outcome::Finding { sort, text: format!("{error} of {call}: {text}") }
+        }
         other => other,
     };
     Ok(Judged { outcome, seconds: run.seconds, stderr: run.stderr })
+}
+
+/// Text of a call with paths relative to the folder of the run. Findings are kept in the repository.
+fn without_folder(text: &str, folder: &Path) -> String {
+    let folder = folder.display().to_string();
+    text.replace(&format!("{folder}/"), "").replace(&folder, ".")
 }
 
 /// True if a write to stderr failed. Calls are counted in each thread, so a fault may meet a second call.
@@ -130,6 +142,13 @@ fn parse(log: &str) -> Vec<Call> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn findings_name_no_folder_of_a_machine() {
+        let text = "openat(AT_FDCWD</x/case>, \"out/a\", O_DIRECTORY) = 8</x/case/out/a>";
+        let expected = "openat(AT_FDCWD<.>, \"out/a\", O_DIRECTORY) = 8<out/a>";
+        assert_eq!(without_folder(text, Path::new("/x/case")), expected);
+    }
 
     #[test]
     fn calls_are_counted_by_thread() {
