@@ -10,9 +10,9 @@
 //! - points (3 × f64)
 //! - tetrahedra and hull triangles (u16 for small point counts, else u32)
 
-use std::borrow::Cow;
 use std::io;
-use std::ops::Range;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
 
 use super::finished::{About, Finished, FinishedCap};
 use super::topology::FinishedJoint;
@@ -132,7 +132,7 @@ pub trait Bytes {
     ///
     /// # Errors
     /// The range cannot be read or does not exist.
-    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>>;
+    fn get(&self, range: Range<u64>) -> io::Result<Piece>;
 }
 
 impl Bytes for [u8] {
@@ -140,8 +140,46 @@ impl Bytes for [u8] {
         Ok(self.len() as u64)
     }
 
-    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
-        <[u8]>::get(self, range.start as usize..range.end as usize).map(<[u8]>::to_vec).ok_or_else(cut_short)
+    fn get(&self, range: Range<u64>) -> io::Result<Piece> {
+        let bytes = <[u8]>::get(self, range.start as usize..range.end as usize).ok_or_else(cut_short)?;
+        Ok(Piece::from(bytes.to_vec()))
+    }
+}
+
+/// Some bytes of a record. A record in memory is not copied.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    whole: Arc<Vec<u8>>,
+    range: Range<usize>,
+}
+
+impl Piece {
+    /// A range of it; `None` if it is out of bounds.
+    pub fn part(&self, range: Range<u64>) -> Option<Self> {
+        let range =
+            self.range.start.checked_add(range.start as usize)?..self.range.start.checked_add(range.end as usize)?;
+        let is_within = range.start <= range.end && range.end <= self.range.end;
+        is_within.then(|| Self { whole: Arc::clone(&self.whole), range })
+    }
+}
+
+impl From<Arc<Vec<u8>>> for Piece {
+    fn from(whole: Arc<Vec<u8>>) -> Self {
+        Self { range: 0..whole.len(), whole }
+    }
+}
+
+impl From<Vec<u8>> for Piece {
+    fn from(bytes: Vec<u8>) -> Self {
+        Arc::new(bytes).into()
+    }
+}
+
+impl Deref for Piece {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.whole[self.range.clone()]
     }
 }
 
@@ -207,7 +245,7 @@ const FIRST: u64 = 1 << 14;
 #[derive(Clone, Debug)]
 pub struct Record<'a, B: ?Sized> {
     bytes: &'a B,
-    first: Vec<u8>,
+    first: Piece,
     sizes: Sizes,
 }
 
@@ -228,15 +266,12 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
         self.sizes
     }
 
-    fn section(&self, index: usize) -> io::Result<Cow<'_, [u8]>> {
+    fn section(&self, index: usize) -> io::Result<Piece> {
         self.range(self.sizes.sections()[index].clone())
     }
 
-    fn range(&self, range: Range<u64>) -> io::Result<Cow<'_, [u8]>> {
-        match self.first.get(range.start as usize..range.end as usize) {
-            Some(bytes) => Ok(bytes.into()),
-            None => self.bytes.get(range).map(Cow::from),
-        }
+    fn range(&self, range: Range<u64>) -> io::Result<Piece> {
+        self.first.part(range.clone()).map_or_else(|| self.bytes.get(range), Ok)
     }
 
     /// Reads certificate and report data.
@@ -300,7 +335,17 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// The section cannot be read.
     pub fn points(&self) -> io::Result<Vec<Point3>> {
         let bytes = self.section(7)?;
-        Ok(doubles(&bytes).chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])).collect())
+        Ok(bytes.as_chunks().0.iter().map(point).collect())
+    }
+
+    /// Reads some points.
+    ///
+    /// # Errors
+    /// The section cannot be read, or a point is missing.
+    pub fn points_at(&self, vertices: &[u32]) -> io::Result<Vec<Point3>> {
+        let bytes = self.section(7)?;
+        let all = bytes.as_chunks().0;
+        vertices.iter().map(|&v| all.get(v as usize).map(point).ok_or_else(damaged)).collect()
     }
 
     /// Reads the tetrahedra.
@@ -325,23 +370,33 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// The cells of the faces cannot be read.
     pub fn triangles(&self, faces: &[u32]) -> io::Result<Vec<[u32; 3]>> {
         if self.sizes.hull == 0 {
-            let tets = self.tets()?;
-            return Ok(faces.iter().map(|&face| face_vertices(&tets, face)).collect());
+            let bytes = self.section(8)?;
+            let of = |&face: &u32| Ok(face_vertices(&[self.cell(&bytes, face >> 2)?], face & 3));
+            return faces.iter().map(of).collect();
         }
-        let hull = self.hull()?;
-        faces.iter().map(|&face| hull.get(face as usize).copied().ok_or_else(damaged)).collect()
+        let bytes = self.section(9)?;
+        faces.iter().map(|&face| self.cell(&bytes, face)).collect()
     }
 
-    /// Reads cells with `N` vertices each.
+    /// Reads all cells of a section, with `N` vertices each.
     fn cells<const N: usize>(&self, section: usize) -> io::Result<Vec<[u32; N]>> {
         let bytes = self.section(section)?;
-        let numbers: Vec<u32> = if self.sizes.narrow() {
-            bytes.as_chunks().0.iter().map(|&b| u32::from(u16::from_le_bytes(b))).collect()
+        let count = if section == 8 { self.sizes.tets } else { self.sizes.hull };
+        (0..count).map(|i| self.cell(&bytes, i)).collect()
+    }
+
+    /// Cell with `N` vertices at a place in its section.
+    fn cell<const N: usize>(&self, section: &[u8], index: u32) -> io::Result<[u32; N]> {
+        let first = N * index as usize;
+        let mut cell = [0; N];
+        if self.sizes.narrow() {
+            let numbers = section.as_chunks().0.get(first..first + N).ok_or_else(damaged)?;
+            cell.iter_mut().zip(numbers).for_each(|(v, &b)| *v = u32::from(u16::from_le_bytes(b)));
         } else {
-            words(&bytes)
-        };
-        let all_there = numbers.iter().all(|&v| v < self.sizes.points);
-        if all_there { Ok(numbers.as_chunks().0.to_vec()) } else { Err(damaged()) }
+            let numbers = section.as_chunks().0.get(first..first + N).ok_or_else(damaged)?;
+            cell.iter_mut().zip(numbers).for_each(|(v, &b)| *v = u32::from_le_bytes(b));
+        }
+        if cell.iter().all(|&v| v < self.sizes.points) { Ok(cell) } else { Err(damaged()) }
     }
 
     /// Reads the whole block.
@@ -365,6 +420,11 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
 
 fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.as_chunks().0.iter().map(|&b| u32::from_le_bytes(b)).collect()
+}
+
+fn point(bytes: &[u8; 24]) -> Point3 {
+    let [x, y, z] = [0, 8, 16].map(|i| f64::from_le_bytes(std::array::from_fn(|k| bytes[i + k])));
+    Point3::new(x, y, z)
 }
 
 fn doubles(bytes: &[u8]) -> Vec<f64> {

@@ -119,27 +119,25 @@ impl<'a> Whole<'a> {
         Ok(self.store.bytes(part.record))
     }
 
-    /// Number in the whole of each vertex of a part: first those that it shares with clusters.
-    fn numbers(&self, part: u32, sizes: &Sizes) -> io::Result<Vec<u32>> {
-        let mut numbers = Vec::with_capacity(sizes.points as usize);
+    /// Numbers in the whole of the vertices of a part.
+    fn numbers(&self, part: u32, sizes: &Sizes) -> io::Result<PointNumbers> {
+        let mut shared = Vec::with_capacity(sizes.shared as usize);
         for &[(cluster, joint), _] in self.plan.joined_to(part) {
             let cluster = self.plan.part(cluster);
             let joints = Record::open(&self.record(cluster)?)?.joints()?;
             // Clusters share nothing, so all of their vertices are their own.
             let vertices = joints.get(joint as usize).map_or(&[][..], |joint| &joint.vertices);
-            numbers.extend(vertices.iter().map(|v| cluster.first_point + v));
+            shared.extend(vertices.iter().map(|v| cluster.first_point + v));
         }
-        if numbers.len() != sizes.shared as usize {
+        if shared.len() != sizes.shared as usize {
             return Err(io::Error::new(io::ErrorKind::InvalidData, "two blocks have different discs at their joint"));
         }
-        let first = self.plan.part(part).first_point;
-        numbers.extend(first..first + self.plan.points_of(part));
-        Ok(numbers)
+        Ok(PointNumbers { shared, first: self.plan.part(part).first_point, own: self.plan.points_of(part) })
     }
 
     /// Reads a part for a single request.
     fn numbers_alone(&self, part: u32) -> io::Result<Vec<u32>> {
-        self.numbers(part, &Record::open(&self.record(self.plan.part(part))?)?.sizes())
+        Ok(self.numbers(part, &Record::open(&self.record(self.plan.part(part))?)?.sizes())?.all())
     }
 
     /// Boundary faces of the whole that a part has, ascending, each with its patch.
@@ -215,7 +213,7 @@ impl<'a> Whole<'a> {
             let bytes = self.record(self.plan.part(part))?;
             let record = Record::open(&bytes)?;
             let (joints, numbers) = (record.joints()?, self.numbers(part, &record.sizes())?);
-            all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers[v as usize]).collect()));
+            all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers.of(v)).collect()));
         }
         Ok(all)
     }
@@ -263,7 +261,7 @@ impl MeshSource for Whole<'_> {
         let plan = self.plan.part(part);
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
-        let numbers = self.numbers(part, &record.sizes())?;
+        let numbers = self.numbers(part, &record.sizes())?.all();
         let mut tets = record.tets()?;
         tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
         let blocks = vec![plan.block; tets.len()].into();
@@ -277,7 +275,7 @@ impl MeshSource for Whole<'_> {
         let numbers = self.numbers(part, &record.sizes())?;
         let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
         let mut faces = record.triangles(&faces)?;
-        faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
+        faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers.of(*v));
         let blocks = vec![plan.block; faces.len()].into();
         Ok(FacePiece { faces: faces.into(), patches: patches.into(), blocks })
     }
@@ -309,13 +307,11 @@ impl Parts for Whole<'_> {
         let bytes = self.record(plan)?;
         let record = Record::open(&bytes)?;
         let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
-        let (points, numbers) = (record.points()?, self.numbers(part, &record.sizes())?);
-        let (faces, vertices) = compact(record.triangles(&faces)?, points.len());
-        let at = |&v: &u32| points[v as usize];
-        let number = |&v: &u32| numbers[v as usize];
+        let numbers = self.numbers(part, &record.sizes())?;
+        let (faces, vertices) = compact(record.triangles(&faces)?, record.sizes().points as usize);
         Ok(FacesApart {
-            points: vertices.iter().map(at).collect(),
-            vertices: vertices.iter().map(number).collect(),
+            points: record.points_at(&vertices)?,
+            vertices: vertices.iter().map(|&v| numbers.of(v)).collect(),
             faces,
         })
     }
@@ -333,11 +329,11 @@ impl Parts for Whole<'_> {
             .into_iter()
             .nth(joint as usize)
             .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
-        let (points, numbers) = (record.points()?, self.numbers(part, &record.sizes())?);
+        let numbers = self.numbers(part, &record.sizes())?;
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
         Ok(FacesApart {
-            points: vertices.iter().map(|&v| points[v as usize]).collect(),
-            vertices: vertices.iter().map(|&v| numbers[v as usize]).collect(),
+            points: record.points_at(&vertices)?,
+            vertices: vertices.iter().map(|&v| numbers.of(v)).collect(),
             faces: record.triangles(&faces)?.into_iter().map(|face| face.map(local)).collect(),
         })
     }
@@ -354,6 +350,26 @@ impl Parts for Whole<'_> {
 
     fn vertices(&self, part: u32, _: u32) -> io::Result<Vec<u32>> {
         self.numbers_alone(part)
+    }
+}
+
+/// Numbers in the whole of the vertices of a part: first those that it shares with clusters.
+struct PointNumbers {
+    shared: Vec<u32>,
+    /// Number of the first vertex that is its own.
+    first: u32,
+    /// Number of vertices that are its own.
+    own: u32,
+}
+
+impl PointNumbers {
+    fn of(&self, v: u32) -> u32 {
+        self.shared.get(v as usize).copied().unwrap_or_else(|| self.first + (v - self.shared.len() as u32))
+    }
+
+    fn all(mut self) -> Vec<u32> {
+        self.shared.extend(self.first..self.first + self.own);
+        self.shared
     }
 }
 

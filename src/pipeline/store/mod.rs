@@ -41,7 +41,7 @@ pub use shard::{NoShard, Shard};
 use shelf::Shelf;
 
 use super::effort::Ledger;
-use crate::block::Bytes;
+use crate::block::{Bytes, Piece};
 use anastomesh_mesh::progress::Progress;
 
 /// Record of the store.
@@ -66,7 +66,7 @@ pub struct Store {
 
 #[derive(Debug)]
 enum Backend {
-    Memory(RwLock<Vec<Arc<[u8]>>>),
+    Memory(RwLock<Vec<Arc<Vec<u8>>>>),
     File(LogFile),
     /// Work directory: its path, the records of other runs, and the file that this run writes to.
     Folder(PathBuf, Shelf, LogFile),
@@ -171,7 +171,7 @@ impl Store {
         let id = match &self.place {
             Backend::Memory(records) => {
                 let mut records = records.write().unwrap_or_else(PoisonError::into_inner);
-                records.push(bytes.into());
+                records.push(Arc::new(bytes));
                 records.len() - 1
             }
             Backend::File(log) => append(log, key, &bytes)?,
@@ -235,19 +235,21 @@ impl Bytes for StoredBytes<'_> {
         count.ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 
-    fn get(&self, range: Range<u64>) -> io::Result<Vec<u8>> {
-        match &self.store.place {
+    fn get(&self, range: Range<u64>) -> io::Result<Piece> {
+        let id = self.id.0 as usize;
+        let bytes = match &self.store.place {
             Backend::Memory(records) => {
                 let records = records.read().unwrap_or_else(PoisonError::into_inner);
-                let record: &[u8] = records.get(self.id.0 as usize).ok_or(io::ErrorKind::NotFound)?;
-                Bytes::get(record, range)
+                let record = Arc::clone(records.get(id).ok_or(io::ErrorKind::NotFound)?);
+                return Piece::from(record).part(range).ok_or_else(|| io::ErrorKind::UnexpectedEof.into());
             }
-            Backend::File(log) => log.read(self.id.0 as usize, range),
-            Backend::Folder(_, others, own) => match (self.id.0 as usize).checked_sub(others.len()) {
-                None => others.read(self.id.0 as usize, range),
-                Some(record) => own.read(record, range),
+            Backend::File(log) => log.read(id, range)?,
+            Backend::Folder(_, others, own) => match id.checked_sub(others.len()) {
+                None => others.read(id, range)?,
+                Some(record) => own.read(record, range)?,
             },
-            Backend::Shelf(others) => others.read(self.id.0 as usize, range),
-        }
+            Backend::Shelf(others) => others.read(id, range)?,
+        };
+        Ok(bytes.into())
     }
 }

@@ -31,8 +31,8 @@ fn assert_holds(store: &Store, n: u32) {
     for i in 0..n {
         let id = store.find(key(i)).expect("kept");
         let bytes = record(i);
-        assert_eq!(store.bytes(id).get(0..bytes.len() as u64).expect("readable"), bytes);
-        assert_eq!(store.bytes(id).get(3..9).expect("readable"), bytes[3..9]);
+        assert_eq!(store.bytes(id).get(0..bytes.len() as u64).expect("readable")[..], bytes);
+        assert_eq!(store.bytes(id).get(3..9).expect("readable")[..], bytes[3..9]);
         assert!(store.bytes(id).get(9..bytes.len() as u64 + 1).is_err(), "a record ends where it ends");
     }
     assert_eq!(store.find(key(n)), None);

@@ -18,6 +18,6 @@ impl Shelf for Store {
     }
 
     fn read(&self, record: u64, range: Range<u64>) -> io::Result<Vec<u8>> {
-        self.bytes(RecordId(record as u32)).get(range)
+        self.bytes(RecordId(record as u32)).get(range).map(|piece| piece.to_vec())
     }
 }
