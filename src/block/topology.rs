@@ -19,14 +19,14 @@ pub struct FinishedJoint {
 /// Adjacency of tetrahedra, and the faces of their boundary: handles `4 · tet + i` in ascending order.
 #[derive(Debug, Default)]
 pub struct Topology {
-    /// Face neighbours.
-    pub adjacency: Arc<TetAdjacency>,
+    /// Face neighbours; `None` for a tube of several templates.
+    pub adjacency: Option<Arc<TetAdjacency>>,
     /// Discs at the ends of the block, in their order.
     pub discs: Vec<FinishedJoint>,
     /// Other faces of the boundary.
     pub wall: Vec<u32>,
-    /// Certificate of the first image.
-    certificate: OnceLock<Certificate>,
+    /// Certificate of the first image, or of the joined templates.
+    pub certificate: OnceLock<Certificate>,
     /// Topologies with other orders of two or three discs, at their [`place`].
     others: [OnceLock<Arc<Topology>>; 6],
 }
@@ -49,7 +49,7 @@ impl Topology {
         let adjacency = Arc::new(tet_adjacency(&mesh.tets, mesh.points.len()));
         let mut faces = Faces::new(adjacency.boundary().map(|face| (face, face_vertices(&mesh.tets, face))));
         let discs = discs.into_iter().map(|disc| faces.joint(disc)).collect::<Result<_, _>>()?;
-        Ok(Self { adjacency, discs, wall: faces.rest(), ..Self::default() })
+        Ok(Self { adjacency: Some(adjacency), discs, wall: faces.rest(), ..Self::default() })
     }
 
     /// Topology of a closed surface with these discs. Faces are indices of triangles, and there is no adjacency.
@@ -72,7 +72,7 @@ impl Topology {
         }
         let make = || {
             let discs = order.iter().map(|&disc| self.discs[disc].clone()).collect();
-            let adjacency = Arc::clone(&self.adjacency);
+            let adjacency = self.adjacency.clone();
             Arc::new(Self { adjacency, discs, wall: self.wall.clone(), ..Self::default() })
         };
         let kept = place(order).and_then(|place| self.others.get(place));
@@ -84,7 +84,8 @@ impl Topology {
         let faces = self.wall.iter().map(|&face| face_vertices(&part.mesh.tets, face));
         let image = self.certificate.get().and_then(|like| certify_image(part, &faces.collect::<Vec<_>>(), like));
         image.unwrap_or_else(|| {
-            let certificate = certify_with(part, || &*self.adjacency);
+            let made = || Arc::new(tet_adjacency(&part.mesh.tets, part.mesh.points.len()));
+            let certificate = certify_with(part, || self.adjacency.clone().unwrap_or_else(made));
             self.certificate.get_or_init(|| certificate.clone());
             certificate
         })

@@ -7,8 +7,7 @@ use crate::block::layered::{Walled, discs_first, renumbered};
 use crate::block::params::BlockParams;
 use crate::block::topology::Topology;
 use crate::partition::{Cut, CutId};
-use anastomesh_mesh::adjacency::face_vertices;
-use anastomesh_mesh::face_key;
+use anastomesh_mesh::check::parts::{Link, PartView};
 use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_mesh::quality::radius_ratio;
 use anastomesh_mesh::{TetMesh, TriMesh};
@@ -68,8 +67,8 @@ pub struct Template {
     pub least: f64,
     /// Topology of the tetrahedra, with both discs.
     pub topology: Arc<Topology>,
-    /// Faces of both discs in the same order.
-    pub interface: [Vec<u32>; 2],
+    /// The template as a link of a tube of several ones; `None` for a cap.
+    pub link: Option<Link>,
 }
 
 /// Cache key: corner count and rotation, length exponent, cap flags, layers (count, bits of growth and thickness), bits of
@@ -119,27 +118,15 @@ impl Template {
         };
         let TubeInterior { mesh, disc, ends, wall, layers } = inside.ok()??;
         let topology = Arc::new(Topology::of(&mesh, ends.iter().map(Vec::as_slice)).ok()?);
-        let interface = interface(&topology, &mesh, disc)?;
+        let is_link = caps == [false; 2];
+        let link = if is_link { Link::new(&PartView { mesh: &mesh, joints: &ends, caps: &[] }) } else { None };
         let TetMesh { mut points, tets } = mesh;
         let least = radius_ratios(&points, &tets[..layers]).fold(1.0, f64::min);
         for point in &mut points {
             point.z /= length;
         }
-        Some(Self { points, disc, ends, wall, tets, rings: tube.rings, layers, least, topology, interface })
+        Some(Self { points, disc, ends, wall, tets, rings: tube.rings, layers, least, topology, link })
     }
-}
-
-/// Faces of both discs, ordered by their vertices in the disc; `None` if the discs differ.
-fn interface(topology: &Topology, mesh: &TetMesh, disc: u32) -> Option<[Vec<u32>; 2]> {
-    let [first, second] = [0, disc].map(|base| {
-        let key = |face: u32| face_key(face_vertices(&mesh.tets, face).map(|v| v - base));
-        let faces = &topology.discs[usize::from(base > 0)].faces;
-        let mut keyed: Vec<_> = faces.iter().map(|&face| (key(face), face)).collect();
-        keyed.sort_unstable();
-        keyed
-    });
-    let are_equal = first.len() == second.len() && first.iter().zip(&second).all(|(a, b)| a.0 == b.0);
-    are_equal.then(|| [first, second].map(|keyed| keyed.into_iter().map(|(_, face)| face).collect()))
 }
 
 /// Filled straight tube with template numbering.

@@ -20,7 +20,7 @@ use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
 use anastomesh_mesh::quality::has_ratio;
 use canonical::Template;
-use joined::{Part, joined};
+use joined::joined;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -156,11 +156,7 @@ impl TemplateImage<'_> {
         if pieces == 1 {
             return Arc::clone(&self.templates[0].topology);
         }
-        let part = |piece| {
-            let Template { topology, interface, .. } = self.template(piece);
-            Part { topology, interface }
-        };
-        Arc::new(joined((0..pieces).map(part)))
+        Arc::new(joined((0..pieces).map(|piece| self.template(piece))))
     }
 
     fn template(&self, piece: u32) -> &Template {

@@ -83,7 +83,13 @@ fn discs_may_be_rotated_by_any_angle() {
             let quality = TetQuality::of(&made.mesh);
             assert!(quality.min > 0.3 && quality.mean > 0.8, "{length} {degrees}: {quality:?}");
             let topology = Topology::of(&made.mesh, made.ends.iter().map(Vec::as_slice));
-            assert_eq!(*made.topology, topology.expect("its discs are on its boundary"), "{length} {degrees}");
+            let Topology { discs, wall, .. } = topology.expect("its discs are on its boundary");
+            assert_eq!((&made.topology.discs, &made.topology.wall), (&discs, &wall), "{length} {degrees}");
+            // Several templates have a certificate without their images.
+            assert!(
+                made.topology.adjacency.is_some() || made.topology.certificate.get().is_some(),
+                "{length} {degrees}"
+            );
             assert!(block(path, &BlockParams::default()).certificate.is_sound(), "{length} {degrees}");
         }
     }

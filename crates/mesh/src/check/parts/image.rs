@@ -3,6 +3,7 @@
 use super::certificate::{bounds_of, has_sound_points, is_star, measured};
 use super::sums::{face_sum, point_sum};
 use super::{Certificate, HeldJoint, HeldSurface, PartView};
+use crate::adjacency::NONE;
 use crate::check::nested::Enclosed;
 use crate::check::surface::Boundary;
 
@@ -34,12 +35,14 @@ pub fn certify_image(part: &PartView, wall: &[[u32; 3]], like: &Certificate) -> 
         faces.iter().fold(0, |sum: u64, face| sum.wrapping_add(face_sum(face.map(|v| sums[v as usize]))))
     };
     let joint = |(held, faces): (&HeldJoint, &Vec<[u32; 3]>)| HeldJoint { sum: sum_of(faces), ..*held };
+    // Vertices inside joints are none of the whole's boundary.
+    let vertex = caps.clone().flatten().chain(wall).flatten().copied().min().unwrap_or(NONE);
     let mut certificate = Certificate {
         volume,
         quality,
         bounds: bounds_of(&mesh.points, &faces),
         wall_sum: caps.fold(sum_of(wall), |sum, faces| sum.wrapping_add(sum_of(faces))),
-        surfaces: vec![HeldSurface { enclosed: Enclosed::exactly(volume), ..surface }],
+        surfaces: vec![HeldSurface { vertex, enclosed: Enclosed::exactly(volume), ..surface }],
         joints: like.joints.iter().zip(part.joints).map(joint).collect(),
         ..like.clone()
     };

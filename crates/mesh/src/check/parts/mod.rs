@@ -44,6 +44,7 @@
 
 mod boxes;
 mod certificate;
+mod chain;
 mod changed;
 mod glue;
 mod ids;
@@ -60,6 +61,7 @@ mod whole;
 mod tests;
 
 pub use certificate::{certify_hollow, certify_with};
+pub use chain::{Link, chained};
 pub use changed::{Changed, meetings_of};
 pub use image::certify_image;
 pub use pieces::{PiecesError, Unfit, check_pieces};
