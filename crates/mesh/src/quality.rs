@@ -1,8 +1,14 @@
 //! Shape of tetrahedra and triangles: radius ratio, dihedral and corner angles, and their distribution over a mesh.
 
+mod spokes;
+
 use super::{TET_FACES, TetMesh};
-use crate::geometry::predicates::{ORIENT3D_BOUND, orient3d};
 use crate::geometry::{Point3, Vec3};
+use nalgebra::{SimdBool, SimdRealField, SimdValue};
+use simba::simd::WideF64x4;
+use spokes::{LANES, four_corners};
+
+pub(crate) use spokes::Spokes;
 
 /// Number of equal bins over [0, 1] in `TetQuality::histogram`.
 pub const HISTOGRAM_BINS: usize = 20;
@@ -32,55 +38,16 @@ pub fn has_ratio([a, b, c, d]: [&Point3; 4], least: f64) -> bool {
     spokes.has_ratio(least) || spokes.radius_ratio() >= least
 }
 
-/// Common terms of orientation, ratio and angles of a tetrahedron: the edges from the first vertex and their products.
-pub(crate) struct Spokes<'a> {
-    corners: [&'a Point3; 4],
-    edges: [Vec3; 3],
-    /// Of the second and third edge, the third and first, the first and second.
-    crossed: [Vec3; 3],
-    /// As [`volume6`].
-    pub(crate) volume: f64,
-}
-
-impl<'a> Spokes<'a> {
-    #[inline]
-    pub(crate) fn new(corners: [&'a Point3; 4]) -> Self {
-        let [a, b, c, d] = corners;
-        let (u, v, w) = (b - a, c - a, d - a);
-        let (vw, wu, uv) = (v.cross(&w), w.cross(&u), u.cross(&v));
-        Self { corners, edges: [u, v, w], crossed: [vw, wu, uv], volume: uv.dot(&w) }
-    }
-
-    /// True if the tetrahedron is positive by the exact predicate.
-    #[inline]
-    pub(crate) fn is_positive(&self) -> bool {
-        let [u, v, w] = self.edges.map(|edge| edge.abs());
-        let largest = |i: usize| u[i].max(v[i]).max(w[i]);
-        let [a, b, c, d] = self.corners;
-        self.volume > ORIENT3D_BOUND * largest(0) * largest(1) * largest(2) || orient3d(a, b, c, d) > 0.0
-    }
-
-    /// True only if the radius ratio is at least `least`. The sum of four areas is at most twice the root of the sum of
-    /// their squares.
-    #[inline]
-    fn has_ratio(&self, least: f64) -> bool {
-        let ([u, v, w], [vw, wu, uv]) = (&self.edges, &self.crossed);
-        let squares = vw.norm_squared() + wu.norm_squared() + uv.norm_squared() + (vw + wu + uv).norm_squared();
-        let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
-        let (square, bound) = (self.volume * self.volume, 2.0 * least * (1.0 + 1e-12));
-        let (square, other) = (36.0 * square * square, bound * bound * squares * center.norm_squared());
-        self.volume > 0.0 && other >= f64::MIN_POSITIVE && (other..f64::INFINITY).contains(&square)
-    }
-
-    #[inline]
-    fn radius_ratio(&self) -> f64 {
-        let ([u, v, w], [vw, wu, uv]) = (&self.edges, &self.crossed);
-        let doubled_area = vw.norm() + wu.norm() + uv.norm() + (vw + wu + uv).norm();
-        let center = vw * u.norm_squared() + wu * v.norm_squared() + uv * w.norm_squared();
-        // r = |V6| / ΣA2 and R = |center| / (2 |V6|), where V6 is six volumes and A2 two areas.
-        let product = doubled_area * center.norm();
-        if product > 0.0 { 6.0 * self.volume * self.volume.abs() / product } else { 0.0 }
-    }
+/// True if each tetrahedron of a mesh has at least the radius ratio `least`, which is not negative, or is accepted by `or`.
+pub fn all_have_ratio(mesh: &TetMesh, least: f64, or: impl Fn([&Point3; 4]) -> bool) -> bool {
+    let corners = |t: &[u32; 4]| t.map(|v| &mesh.points[v as usize]);
+    let is_good = |corners: [&Point3; 4]| has_ratio(corners, least) || or(corners);
+    let (fours, rest) = mesh.tets.as_chunks::<LANES>();
+    let are_good = |four: &[[u32; 4]; LANES]| {
+        let four = four.each_ref().map(corners);
+        Spokes::of_four(&four_corners(&four)).has_ratio(least).all() || four.into_iter().all(is_good)
+    };
+    fours.iter().all(are_good) && rest.iter().map(corners).all(is_good)
 }
 
 /// Radius ratio of a tetrahedron by its corners, in [−1, 1]; negative if inverted.
@@ -160,28 +127,21 @@ impl CotangentRange {
         }
     }
 
-    /// As [`Self::include`], fast if few tetrahedra widen the range: comparing squares, without roots, rejects most.
+    /// True for tetrahedra that certainly do not widen the range: compares squares, without roots.
     #[inline]
-    fn include_if_wider(&mut self, spokes: &Spokes) {
+    fn has<T: SimdRealField<Element = f64> + Copy>(&self, spokes: &Spokes<T>) -> T::SimdBool {
         let ([u, v, w], [vw, wu, uv]) = (&spokes.edges, &spokes.crossed);
         let away = -(vw + wu + uv);
-        let volume = spokes.volume;
         // Faces at the edges of `u`, `v`, `w` and of the three others.
-        let adjacent = [wu.dot(uv), vw.dot(uv), vw.dot(wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)].map(|x| -x);
-        let [_, b, c, d] = spokes.corners;
-        let squares = [*u, *v, *w, c - b, d - b, d - c].map(|e| e.norm_squared() * (volume * volume));
-        let square = |x: f64| x * x.abs();
-        let (low, high) = (
-            square(self.low) * (1.0 + ROUNDOFF * self.low.signum()),
-            square(self.high) * (1.0 - ROUNDOFF * self.high.signum()),
-        );
-        let within = |(&adjacent, &opposite): (&f64, &f64)| {
-            let x = square(adjacent);
-            x > low * opposite && x < high * opposite
-        };
-        if !adjacent.iter().zip(&squares).all(within) {
-            self.include(spokes.corners);
-        }
+        let adjacent = [wu.dot(uv), vw.dot(uv), vw.dot(wu), uv.dot(&away), wu.dot(&away), vw.dot(&away)];
+        let volume = spokes.volume * spokes.volume;
+        let squares = [*u, *v, *w, v - u, w - u, w - v].map(|e| e.norm_squared() * volume);
+        let bound = |x: f64, roundoff: f64| T::splat(x * x.abs() * (1.0 + roundoff * x.signum()));
+        let (low, high) = (bound(self.low, ROUNDOFF), bound(self.high, -ROUNDOFF));
+        adjacent.into_iter().zip(squares).fold(Spokes::<T>::truth(), |all, (x, opposite)| {
+            let square = -(x * x.simd_abs());
+            all & square.simd_gt(low * opposite) & square.simd_lt(high * opposite)
+        })
     }
 
     /// Smallest and largest angle.
@@ -242,7 +202,8 @@ impl TetQuality {
         let mut ratios = Vec::with_capacity(tets.len());
         let mut sum = QualitySum::default();
         for t in tets {
-            ratios.push(sum.include(&Spokes::new(t.map(|v| &mesh.points[v as usize]))));
+            let corners = t.map(|v| &mesh.points[v as usize]);
+            ratios.push(sum.include(&Spokes::new(corners), corners));
         }
         Self { percentile_1: percentile(&mut ratios, 0.01), ..sum.quality() }
     }
@@ -273,16 +234,55 @@ impl Default for QualitySum {
 impl QualitySum {
     /// Adds a tetrahedron. Returns its radius ratio.
     #[inline]
-    pub(crate) fn include(&mut self, spokes: &Spokes) -> f64 {
+    pub(crate) fn include(&mut self, spokes: &Spokes, corners: [&Point3; 4]) -> f64 {
         let q = spokes.radius_ratio();
+        self.add(q);
+        if !self.dihedral.has(spokes) {
+            self.dihedral.include(corners);
+        }
+        q
+    }
+
+    #[inline]
+    fn add(&mut self, q: f64) {
         // The fine bin lies in the coarse one despite rounding.
         let coarse = ((q * HISTOGRAM_BINS as f64) as usize).min(HISTOGRAM_BINS - 1) * PER_BIN;
         let fine = ((q * FINE_BINS as f64) as usize).clamp(coarse, coarse + PER_BIN - 1);
         self.bins[fine] += 1;
         self.sum += q;
         self.min = self.min.min(q);
-        self.dihedral.include_if_wider(spokes);
-        q
+    }
+
+    /// Adds tetrahedra. Returns true if all are positive by the exact predicate, and the sum of [`volume6`].
+    pub(crate) fn include_all(&mut self, points: &[Point3], tets: &[[u32; 4]]) -> (bool, f64) {
+        let corners = |t: &[u32; 4]| t.map(|v| &points[v as usize]);
+        let (mut are_positive, mut volume) = (true, 0.0);
+        let (fours, rest) = tets.as_chunks::<LANES>();
+        for four in fours {
+            let four = four.each_ref().map(corners);
+            let spokes = Spokes::of_four(&four_corners(&four));
+            are_positive &= spokes.are_surely_positive().all() || four.iter().all(|&c| Spokes::new(c).is_positive(c));
+            self.include_four(&spokes, &four);
+            volume = (0..LANES).fold(volume, |sum, lane| sum + spokes.volume.extract(lane));
+        }
+        for corners in rest.iter().map(corners) {
+            let spokes = Spokes::new(corners);
+            are_positive &= spokes.is_positive(corners);
+            volume += spokes.volume;
+            self.include(&spokes, corners);
+        }
+        (are_positive, volume)
+    }
+
+    #[inline]
+    fn include_four(&mut self, spokes: &Spokes<WideF64x4>, four: &[[&Point3; 4]; LANES]) {
+        let q = spokes.radius_ratio();
+        (0..LANES).for_each(|lane| self.add(q.extract(lane)));
+        if !self.dihedral.has(spokes).all() {
+            for &corners in four {
+                self.dihedral.include(corners);
+            }
+        }
     }
 
     /// Shape of all added tetrahedra. The percentile is linear within a bin, so its error is at most a bin's width,

@@ -11,13 +11,16 @@ use crate::partition::Cluster;
 use crate::surface::Field;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Vec3};
-use anastomesh_mesh::quality::{dihedral_range, has_ratio};
+use anastomesh_mesh::quality::{all_have_ratio, dihedral_range, has_ratio};
 use anastomesh_tet::Effort;
 use anastomesh_tet::parts::{OptimizeOptions, optimize};
 use std::sync::Arc;
 
 /// Decrease of a limb's weight per length of the limb.
 const SHARPNESS: f64 = 6.0;
+/// Decrease of a limb's score per radius of distance from its axis, beyond a distance in radii.
+const ASIDE: f64 = 0.5;
+const FREE: f64 = 1.25;
 /// Newton steps of a point of the wall, its largest deviation from its level after them, and its largest displacement in
 /// radii.
 const STEPS: usize = 6;
@@ -103,15 +106,25 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
 /// Moves a point with the limbs of a fork: the mean of its images in their frames.
 fn moved(p: &Point3, from: &Fork, to: &Fork) -> Point3 {
     let w = p - from.node;
-    let shares = from.limbs.map(|limb| w.dot(&limb.axis) / limb.length);
-    let largest = shares.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let shares = from.limbs.each_ref().map(|limb| w.dot(&limb.axis) / limb.length);
+    let scores: [f64; 3] = std::array::from_fn(|i| score(&w, shares[i], &from.limbs[i]));
+    let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (mut sum, mut total) = (Vec3::zeros(), 0.0);
     for i in 0..3 {
-        let weight = libm::exp(SHARPNESS * (shares[i] - largest));
+        let weight = if scores[i] == largest { 1.0 } else { libm::exp(SHARPNESS * (scores[i] - largest)) };
         sum += with_limb(&w, shares[i], [&from.limbs[i], &to.limbs[i]]) * weight;
         total += weight;
     }
     to.node + sum / total
+}
+
+/// Logarithm of a limb's weight, over [`SHARPNESS`]: the share of its length, less what a point is beyond its end or beside
+/// it. A long limb passes the end of a short one that is at a small angle with it.
+fn score(w: &Vec3, share: f64, limb: &Limb) -> f64 {
+    let [near, far] = limb.radii;
+    let radius = near + (far - near) * share.clamp(0.0, 1.0);
+    let aside = (w - limb.axis * (share * limb.length)).norm() / radius;
+    share.min(2.0 - share) - ASIDE * (aside - FREE).max(0.0)
 }
 
 /// Image of an offset from the node, at a share of a limb's length, in the frame of the other limb.
@@ -148,8 +161,7 @@ fn at_level(field: &mut Field, start: Point3, level: f64, plane: Option<Vec3>, f
 
 /// True if no tetrahedron has a smaller radius ratio or, in degrees, a smaller dihedral angle.
 fn is_above(mesh: &TetMesh, least: f64, angle: f64) -> bool {
-    mesh.tets.iter().all(|t| {
-        let corners = t.map(|v| &mesh.points[v as usize]);
-        has_ratio(corners, ANGULAR) || (has_ratio(corners, least) && dihedral_range(corners).0.to_degrees() >= angle)
+    all_have_ratio(mesh, ANGULAR, |corners| {
+        has_ratio(corners, least) && dihedral_range(corners).0.to_degrees() >= angle
     })
 }

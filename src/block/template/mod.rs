@@ -18,7 +18,7 @@ use super::topology::Topology;
 use crate::surface::SharedDisc;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::geometry::{Point3, Section};
-use anastomesh_mesh::quality::has_ratio;
+use anastomesh_mesh::quality::{all_have_ratio, has_ratio};
 use canonical::Template;
 use joined::joined;
 use std::f64::consts::TAU;
@@ -211,6 +211,10 @@ impl TemplateImage<'_> {
 
     /// True if no tetrahedron is much worse than in the template, after undoing the stretch along the axis.
     fn is_good(&self, mesh: &TetMesh) -> bool {
+        let has_layers = self.templates.iter().any(|template| template.layers > 0);
+        if self.stretch == 1.0 && !has_layers {
+            return all_have_ratio(mesh, LEAST, |_| false);
+        }
         let shrunk = |p: &[Point3; 4]| -> [Point3; 4] {
             let path = (p[0] - self.path.at(0.0).origin).norm();
             let axis = self.path.at(path.min(self.path.length())).axis;

@@ -394,7 +394,7 @@ fn part_sum(mesh: &dyn MeshSource, piece: &TetPiece, is_unnamed: &dyn Fn(&[u32; 
         if !is_finite || orient3d(a, b, c, d) <= 0.0 {
             made.flat.push((i, *a));
         }
-        made.quality.include(&Spokes::new([a, b, c, d]));
+        made.quality.include(&Spokes::new([a, b, c, d]), [a, b, c, d]);
         made.of_tets.push(region);
     }
     made.tets = piece.tets.to_vec();

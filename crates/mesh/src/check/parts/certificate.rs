@@ -13,7 +13,7 @@ use crate::check::surfaces::{Surface, Surfaces, surfaces};
 use crate::face_key;
 use crate::geometry::predicates::in_exact_range;
 use crate::geometry::{Aabb, DisjointSets, Point3, Vec3, is_star_shaped};
-use crate::quality::{QualityPiece, QualitySum, Spokes};
+use crate::quality::{QualityPiece, QualitySum};
 use nalgebra::Matrix3;
 use std::borrow::Borrow;
 
@@ -87,19 +87,10 @@ pub(super) fn has_sound_points(mesh: &TetMesh) -> bool {
     mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
 }
 
-/// True if all tetrahedra are positive, with their volume and their quality. `meet` receives each vertex.
-pub(super) fn measured(mesh: &TetMesh, mut meet: impl FnMut(u32)) -> (bool, f64, QualityPiece) {
-    let (mut are_positive, mut volume, mut quality) = (true, 0.0, QualitySum::default());
-    for t in &mesh.tets {
-        let p = t.map(|v| {
-            meet(v);
-            &mesh.points[v as usize]
-        });
-        let spokes = Spokes::new(p);
-        are_positive &= spokes.is_positive();
-        volume += spokes.volume;
-        quality.include(&spokes);
-    }
+/// True if all tetrahedra are positive, with their volume and their quality.
+pub(super) fn measured(mesh: &TetMesh) -> (bool, f64, QualityPiece) {
+    let mut quality = QualitySum::default();
+    let (are_positive, volume) = quality.include_all(&mesh.points, &mesh.tets);
     (are_positive, volume / 6.0, quality.piece())
 }
 
@@ -126,7 +117,8 @@ impl Certificate {
     fn measure_cells(&mut self, mesh: &TetMesh, adjacency: &TetAdjacency) -> bool {
         let mut used = vec![false; mesh.points.len()];
         let are_positive;
-        (are_positive, self.volume, self.quality) = measured(mesh, |v| used[v as usize] = true);
+        (are_positive, self.volume, self.quality) = measured(mesh);
+        mesh.tets.as_flattened().iter().for_each(|&v| used[v as usize] = true);
         // Positive tetrahedra have four vertices each. Two with the same vertices are neighbours by a face (or it is
         // crowded), and when both are positive they see it turn the same way.
         let are_linked = adjacency.crowded.is_empty() && neighbors_are_opposite(mesh, adjacency);

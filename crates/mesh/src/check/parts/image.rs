@@ -24,7 +24,7 @@ pub fn certify_image(part: &PartView, wall: &[[u32; 3]], like: &Certificate) -> 
     if !is_sound || !is_like || !has_sound_points(mesh) {
         return None;
     }
-    let (are_positive, volume, quality) = measured(mesh, |_| ());
+    let (are_positive, volume, quality) = measured(mesh);
     let caps = part.caps.iter().map(|(_, faces)| faces);
     let faces: Vec<[u32; 3]> = part.joints.iter().chain(caps.clone()).flatten().chain(wall).copied().collect();
     if !are_positive || !(is_star(part, &faces) || is_apart(part, &faces)) {
