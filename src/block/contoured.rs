@@ -370,7 +370,7 @@ pub(super) fn disc_ends(
             let triangles = faces(i);
             let rim = disc_rim(&triangles).ok_or_else(failed)?;
             let surface = EndSurface { cut: end.cut, side: end.side, section: end.section, triangles, rim };
-            surface.check(&mesh.points).map_err(|_| failed())?;
+            surface.check_flat(&mesh.points).map_err(|_| failed())?;
             Ok(surface)
         })
         .collect()

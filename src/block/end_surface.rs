@@ -130,61 +130,50 @@ fn folds_back(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> bool {
 /// Boundary loop of an oriented triangle set, starting at its smallest vertex. Returns `None` unless the set is one
 /// connected disc: no repeated directed edge, one simple loop, Euler number 1.
 pub(crate) fn disc_rim(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
-    let mut edges: Vec<(u32, u32)> = Vec::with_capacity(3 * triangles.len());
-    for t in triangles {
-        edges.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
+    // Directed edges with their triangles, and the tails of those without a neighbour.
+    let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+    for (&[a, b, c], i) in triangles.iter().zip(0..) {
+        edges.extend([[a, b], [b, c], [c, a]].map(|edge| (edge, i)));
     }
     edges.sort_unstable();
-    if edges.windows(2).any(|w| w[0] == w[1]) {
+    if edges.windows(2).any(|pair| pair[0].0 == pair[1].0) {
         return None;
     }
-    let boundary: Vec<(u32, u32)> =
-        edges.iter().copied().filter(|&(a, b)| edges.binary_search(&(b, a)).is_err()).collect();
+    let beyond = |[a, b]: [u32; 2]| edges.binary_search_by_key(&[b, a], |(edge, _)| *edge).ok().map(|i| edges[i].1);
+    let boundary: Vec<[u32; 2]> = edges.iter().map(|(edge, _)| *edge).filter(|&edge| beyond(edge).is_none()).collect();
     // Sorted by tail, so that a repeated tail is a pinched vertex.
-    if boundary.is_empty() || boundary.windows(2).any(|w| w[0].0 == w[1].0) {
+    if boundary.is_empty() || boundary.windows(2).any(|pair| pair[0][0] == pair[1][0]) {
         return None;
     }
-    let mut rim = vec![boundary[0].0];
-    let mut at = boundary[0].1;
-    while at != rim[0] {
+    let [first, mut at] = boundary[0];
+    let mut rim = vec![first];
+    while at != first {
         if rim.len() > boundary.len() {
             return None;
         }
         rim.push(at);
-        let k = boundary.binary_search_by_key(&at, |e| e.0).ok()?;
-        at = boundary[k].1;
+        let k = boundary.binary_search_by_key(&at, |edge| edge[0]).ok()?;
+        at = boundary[k][1];
     }
-    if rim.len() != boundary.len() || !edge_connected(triangles, &edges) {
+    if rim.len() != boundary.len() || !is_connected(triangles, beyond) {
         return None;
     }
-    let mut vertices: Vec<u32> = edges.iter().map(|e| e.0).collect();
+    let mut vertices: Vec<u32> = edges.iter().map(|(edge, _)| edge[0]).collect();
     vertices.dedup();
     let edge_count = usize::midpoint(edges.len(), boundary.len());
     (vertices.len() + triangles.len() == edge_count + 1).then_some(rim)
 }
 
-/// True if the triangles are connected; `edges` are all their directed edges, sorted.
-fn edge_connected(triangles: &[[u32; 3]], edges: &[(u32, u32)]) -> bool {
-    let owner: rustc_hash::FxHashMap<(u32, u32), u32> = triangles
-        .iter()
-        .enumerate()
-        .flat_map(|(i, t)| (0..3).map(move |k| ((t[k], t[(k + 1) % 3]), i as u32)))
-        .collect();
+/// True if the triangles are connected by edges. `beyond` gives the triangle on the other side of a directed edge.
+fn is_connected(triangles: &[[u32; 3]], beyond: impl Fn([u32; 2]) -> Option<u32>) -> bool {
     let mut seen = vec![false; triangles.len()];
     let mut stack = vec![0u32];
     seen[0] = true;
     let mut count = 1;
     while let Some(i) = stack.pop() {
-        let t = triangles[i as usize];
-        for k in 0..3 {
-            let back = (t[(k + 1) % 3], t[k]);
-            if edges.binary_search(&back).is_err() {
-                continue;
-            }
-            if let Some(&j) = owner.get(&back)
-                && !seen[j as usize]
-            {
-                seen[j as usize] = true;
+        let [a, b, c] = triangles[i as usize];
+        for j in [[a, b], [b, c], [c, a]].into_iter().filter_map(&beyond) {
+            if !std::mem::replace(&mut seen[j as usize], true) {
                 count += 1;
                 stack.push(j);
             }
@@ -209,6 +198,17 @@ impl EndSurface {
     /// # Errors
     /// Returns the first fault found.
     pub fn check(&self, points: &[Point3]) -> Result<(), EndFault> {
+        if disc_rim(&self.triangles).as_ref() != Some(&self.rim) {
+            return Err(EndFault::NotADisc);
+        }
+        self.check_flat(points)
+    }
+
+    /// Checks a surface with the rim of [`disc_rim`].
+    ///
+    /// # Errors
+    /// See [`EndSurface::check`].
+    pub fn check_flat(&self, points: &[Point3]) -> Result<(), EndFault> {
         let extent = self
             .triangles
             .iter()
@@ -221,9 +221,6 @@ impl EndSurface {
             if cross(a, b, c) <= 0 {
                 return Err(EndFault::Fold(i as u32));
             }
-        }
-        if disc_rim(&self.triangles).as_ref() != Some(&self.rim) {
-            return Err(EndFault::NotADisc);
         }
         let polygon: Vec<[i64; 2]> = self.rim.iter().map(|&v| plane.snap(&points[v as usize])).collect();
         crossing(&polygon).map_or(Ok(()), |(i, j)| Err(EndFault::RimCrosses(i, j)))

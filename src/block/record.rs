@@ -222,9 +222,7 @@ pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
     }
     for numbers in [block.mesh.tets.as_flattened(), block.hull.as_flattened()] {
         if sizes.narrow() {
-            for &v in numbers {
-                out.extend_from_slice(&(v as u16).to_le_bytes());
-            }
+            put_each(&mut out, numbers, |v| (v as u16).to_le_bytes());
         } else {
             put(&mut out, numbers);
         }
@@ -233,9 +231,14 @@ pub fn encode(block: &Finished) -> io::Result<Vec<u8>> {
 }
 
 fn put(out: &mut Vec<u8>, values: &[u32]) {
-    for v in values {
-        out.extend_from_slice(&v.to_le_bytes());
-    }
+    put_each(out, values, u32::to_le_bytes);
+}
+
+fn put_each<const N: usize>(out: &mut Vec<u8>, values: &[u32], bytes: impl Fn(u32) -> [u8; N]) {
+    let start = out.len();
+    out.resize(start + N * values.len(), 0);
+    let slots = out[start..].as_chunks_mut().0;
+    slots.iter_mut().zip(values).for_each(|(slot, &v)| *slot = bytes(v));
 }
 
 /// Bytes read at once: all of most blocks, and the most requested sections of large ones.
@@ -345,7 +348,11 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     pub fn points_at(&self, vertices: &[u32]) -> io::Result<Vec<Point3>> {
         let bytes = self.section(7)?;
         let all = bytes.as_chunks().0;
-        vertices.iter().map(|&v| all.get(v as usize).map(point).ok_or_else(damaged)).collect()
+        let mut points = Vec::with_capacity(vertices.len());
+        for &v in vertices {
+            points.push(all.get(v as usize).map(point).ok_or_else(damaged)?);
+        }
+        Ok(points)
     }
 
     /// Reads the tetrahedra.
@@ -369,20 +376,31 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// # Errors
     /// The cells of the faces cannot be read.
     pub fn triangles(&self, faces: &[u32]) -> io::Result<Vec<[u32; 3]>> {
+        let mut triangles = Vec::with_capacity(faces.len());
         if self.sizes.hull == 0 {
             let bytes = self.section(8)?;
-            let of = |&face: &u32| Ok(face_vertices(&[self.cell(&bytes, face >> 2)?], face & 3));
-            return faces.iter().map(of).collect();
+            for &face in faces {
+                triangles.push(face_vertices(&[self.cell(&bytes, face >> 2)?], face & 3));
+            }
+        } else {
+            let bytes = self.section(9)?;
+            for &face in faces {
+                triangles.push(self.cell(&bytes, face)?);
+            }
         }
-        let bytes = self.section(9)?;
-        faces.iter().map(|&face| self.cell(&bytes, face)).collect()
+        Ok(triangles)
     }
 
     /// Reads all cells of a section, with `N` vertices each.
     fn cells<const N: usize>(&self, section: usize) -> io::Result<Vec<[u32; N]>> {
         let bytes = self.section(section)?;
-        let count = if section == 8 { self.sizes.tets } else { self.sizes.hull };
-        (0..count).map(|i| self.cell(&bytes, i)).collect()
+        let numbers: Vec<u32> = if self.sizes.narrow() {
+            bytes.as_chunks().0.iter().map(|&b| u32::from(u16::from_le_bytes(b))).collect()
+        } else {
+            words(&bytes)
+        };
+        let all_there = numbers.iter().all(|&v| v < self.sizes.points);
+        if all_there { Ok(numbers.as_chunks().0.to_vec()) } else { Err(damaged()) }
     }
 
     /// Cell with `N` vertices at a place in its section.
