@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Factors of the lengths of a canonical fork, tried in turn. In the middle of some cells, a cut is in the wall of another vessel.
-const STRETCHES: [f64; 3] = [1.0, 1.1, 1.2];
+const STRETCHES: [f64; 5] = [1.0, 1.1, 1.2, 1.35, 1.5];
 
 /// Filled fork in the middle of a cell.
 pub struct Canonical {

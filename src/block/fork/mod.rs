@@ -30,9 +30,9 @@ use std::hash::BuildHasher;
 /// Maximum ρ. Larger canonical forks would take much memory, and more than a second that cannot be cancelled.
 const FINEST: f64 = 6.0;
 /// Minimum number of forks in a cell with a canonical fork, which takes about as long as a contoured one.
-const MANY: u32 = 3;
+const MANY: u32 = 4;
 /// Largest rank of a cell.
-const RANKS: u8 = 24;
+const RANKS: u8 = 100;
 
 /// Cells of the clusters of a network. Cells that many forks are in are chosen, and each fork has the nearest chosen one:
 /// a fine one, else a coarse one.

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use std::sync::{Arc, LazyLock, OnceLock, PoisonError, RwLock};
 
 /// Ratio of consecutive template lengths, which are powers of it. A tube is stretched or shrunk by at most half a step.
-const STEP: f64 = 1.05;
+const STEP: f64 = 1.1;
 
 /// Density of wall rings, slightly below that of equilateral triangles. With equal spacing of inner rings, tetrahedra
 /// have better shapes.
