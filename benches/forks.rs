@@ -31,7 +31,7 @@ fn measure(path: &Path) {
     let params = PartitionParams { cut_terminals: true, ..PartitionParams::default() };
     let mut clusters = partition(&network, &params).expect("a partition").clusters;
     let cells = shared_cells(clusters.len() as u32, |i| clusters[i as usize].clone());
-    clusters.iter_mut().zip(cells).for_each(|(cluster, cells)| cluster.cells = cells);
+    (0..).zip(&mut clusters).for_each(|(i, cluster)| cluster.cells = cells.of(i));
     // Canonical forks are kept for a while, so forks of one follow each other.
     clusters.sort_by_key(template_of);
     let is_fork = |cluster: &&Cluster| {

@@ -115,7 +115,7 @@ pub mod testing {
         FinishedJoint, FlattenFailure, NotOnBoundary, StoredEnd,
     };
     pub use crate::partition::{
-        BranchPiece, Cut, ForkCells, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
+        BranchPiece, Cut, ForkCell, ForkCells, Partition, PartitionFlaw, PartitionWarning, UncutCounts, UncutReason,
     };
     #[cfg(feature = "cli")]
     pub use crate::report::info::{Quartiles, UnitGuess};

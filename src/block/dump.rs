@@ -113,7 +113,7 @@ impl BlockDump {
             ends: cluster.ends.iter().map(end).collect(),
             fine: cluster.fine.clone(),
             size: None,
-            cells: cluster.cells,
+            cells: cluster.cells.clone(),
         };
         Self::new(params, nodes, BlockInput::Cluster { id, cluster })
     }

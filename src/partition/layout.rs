@@ -36,7 +36,7 @@ pub struct Layout {
     sizes: Option<SizeAt>,
     /// Cells of the forks, by cluster; empty if no fork has a template.
     #[serde(skip)]
-    cells: Vec<ForkCells>,
+    cells: ForkCells,
     chains: Chains,
     overrun: Overruns,
     /// Branch pieces of the clusters, cluster by cluster.
@@ -97,7 +97,7 @@ impl Layout {
         let mut layout = Self {
             skeleton,
             sizes: None,
-            cells: Vec::new(),
+            cells: ForkCells::default(),
             // The settler still borrows the chains.
             chains: Chains::default(),
             overrun: settler.params.overruns(),
@@ -279,7 +279,7 @@ impl Layout {
 
     /// Sets the cells of the forks, by cluster.
     #[must_use]
-    pub fn with_cells(self, cells: Vec<ForkCells>) -> Self {
+    pub fn with_cells(self, cells: ForkCells) -> Self {
         Self { cells, ..self }
     }
 
@@ -394,8 +394,8 @@ impl Layout {
     }
 
     fn cluster_with(&self, id: ClusterId, mut each: impl FnMut(BranchPiece)) -> Cluster {
-        let cells = self.cells.get(id.0 as usize).copied().unwrap_or_default();
-        let mut cluster = Cluster { nodes: self.nodes(id).to_vec(), cells, ..Cluster::default() };
+        let (nodes, cells) = (self.nodes(id).to_vec(), self.cells.of(id.0));
+        let mut cluster = Cluster { nodes, cells, ..Cluster::default() };
         let mut legs: Vec<(NodeId, Leg)> = Vec::new();
         let r_min = self.r_min[id.0 as usize];
         for (index, piece) in (self.first_piece[id.0 as usize]..).zip(self.pieces_of(id.0 as usize)) {

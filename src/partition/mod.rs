@@ -26,8 +26,8 @@ pub use check::{PartitionFlaw, check_partition};
 pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
 pub use parts::{
-    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, ForkCells, Partition, PartitionWarning,
-    UncutReason,
+    BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, FORK_PLACES, ForkCell, ForkCells, Partition,
+    PartitionWarning, UncutReason,
 };
 pub use summary::{PartitionSummary, UncutCounts};
 

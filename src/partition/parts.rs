@@ -117,31 +117,39 @@ pub struct Cluster {
     /// Requested edge size in the middle of a single-vessel cluster, relative to the edge length of the resolution.
     #[serde(skip)]
     pub size: Option<f64>,
-    /// Cell of the canonical fork that the cluster may be an image of.
-    #[serde(default)]
-    pub cells: ForkCells,
+    /// Cells of the canonical forks that the cluster may be an image of, nearest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cells: Vec<ForkCell>,
 }
 
-/// Cells of similar bifurcations, which have one template each.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum ForkCells {
-    /// No template.
-    #[default]
-    None,
-    /// Small cells. Rank of the cell by its distance from the fork, 0 for the cell that it is in.
-    Fine(u8),
-    /// Large cells, for forks that have few alike, with the rank of the cell.
-    Coarse(u8),
+/// Number of coordinates of a fork's shape.
+pub const FORK_PLACES: usize = 12;
+
+/// Cell of similar bifurcations, which have one template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+pub struct ForkCell {
+    /// True for a large cell, for forks that have few alike.
+    pub is_coarse: bool,
+    /// Sides of the ends of the vessels.
+    pub sides: [u8; 3],
+    /// Steps of the coordinates of the shape.
+    pub steps: [i8; FORK_PLACES],
+}
+
+/// Cells of the clusters of a network.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ForkCells {
+    /// Cells with a canonical fork.
+    pub chosen: Vec<ForkCell>,
+    /// Nearest two of them for each cluster, or fewer.
+    pub nearest: Vec<[Option<u32>; 2]>,
 }
 
 impl ForkCells {
-    /// Number that no other cells have.
-    pub fn number(self) -> u32 {
-        match self {
-            Self::None => 0,
-            Self::Fine(rank) => 1 + 2 * u32::from(rank),
-            Self::Coarse(rank) => 2 + 2 * u32::from(rank),
-        }
+    /// Cells of a cluster, nearest first.
+    pub fn of(&self, cluster: u32) -> Vec<ForkCell> {
+        let nearest = self.nearest.get(cluster as usize).into_iter().flatten().flatten();
+        nearest.map(|&cell| self.chosen[cell as usize]).collect()
     }
 }
 

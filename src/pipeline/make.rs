@@ -8,7 +8,7 @@ use super::effort::Effort;
 use super::plan::{JointStyle, MeshPlan};
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
-use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, Layout};
+use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, ForkCell, Layout};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::parts::Watch;
 
@@ -211,7 +211,13 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Ret
         }
         key.id(end.overrun);
     }
-    key.id(cluster.cells.number());
+    key.count(cluster.cells.len());
+    for ForkCell { is_coarse, sides, steps } in &cluster.cells {
+        key.id(u32::from(*is_coarse));
+        for id in sides.map(u32::from).into_iter().chain(steps.map(|step| step as u32)) {
+            key.id(id);
+        }
+    }
     // Clusters without are found by the keys that they always had.
     for fork in &cluster.fine {
         key.point(&fork.at);

@@ -1,8 +1,8 @@
 //! Canonical forks in use, for all threads.
 
 use super::canonical::Canonical;
-use super::shape::Cell;
 use crate::block::params::BlockParams;
+use crate::partition::ForkCell;
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
@@ -10,7 +10,7 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 const RECENT: usize = 64;
 
 /// Cell, and the bits of ρ and of the core factor.
-type Key = (Cell, [u64; 2]);
+type Key = (ForkCell, [u64; 2]);
 /// `None`: the cell has no canonical fork.
 type Entry = Arc<OnceLock<Option<Arc<Canonical>>>>;
 
@@ -38,7 +38,7 @@ impl Kept {
 }
 
 /// Returns the canonical fork of a cell; `None` if it cannot be made.
-pub fn canonical(cell: Cell, params: &BlockParams) -> Option<Arc<Canonical>> {
+pub fn canonical(cell: ForkCell, params: &BlockParams) -> Option<Arc<Canonical>> {
     let key = (cell, [params.rho, params.core].map(f64::to_bits));
     // A panicked thread leaves only complete entries.
     let entry = KEPT.lock().unwrap_or_else(PoisonError::into_inner).entry(key);

@@ -1,11 +1,11 @@
 //! Canonical fork of a cell: contoured and filled as other clusters are, then optimized.
 
 use super::crotch::crotches;
-use super::shape::{Cell, Fork, TIP};
+use super::shape::{Fork, TIP, middle};
 use crate::block::contoured::{ClusterMesh, contoured};
 use crate::block::params::{BlockParams, EndStyle};
 use crate::block::topology::Topology;
-use crate::partition::{ClusterId, PartitionParams};
+use crate::partition::{ClusterId, ForkCell, PartitionParams};
 use crate::surface::Field;
 use anastomesh_mesh::TetMesh;
 use anastomesh_mesh::adjacency::{face_vertices, tet_adjacency};
@@ -47,14 +47,14 @@ pub struct Level {
 
 impl Canonical {
     /// Makes the canonical fork of a cell; `None` if that fails.
-    pub fn of(cell: &Cell, params: &BlockParams) -> Option<Self> {
+    pub fn of(cell: &ForkCell, params: &BlockParams) -> Option<Self> {
         STRETCHES.iter().find_map(|&stretch| Self::stretched(cell, stretch, params))
     }
 
-    fn stretched(cell: &Cell, stretch: f64, params: &BlockParams) -> Option<Self> {
+    fn stretched(cell: &ForkCell, stretch: f64, params: &BlockParams) -> Option<Self> {
         let partition = PartitionParams::default();
         let overrun = partition.overrun.max(2.0 * partition.overrun_voxels / params.rho);
-        let cluster = cell.cluster(overrun, stretch);
+        let cluster = middle(cell, overrun, stretch);
         let fork = Fork::of(&cluster).filter(|fork| (0..).zip(&fork.limbs).all(|(i, limb)| limb.end == i))?;
         let params = BlockParams { ends: EndStyle::Shared, core: params.core, ..BlockParams::with_rho(params.rho) };
         let made = contoured(ClusterId(0), &cluster, &params, &Watch::NOBODY).ok()?;

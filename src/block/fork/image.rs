@@ -29,6 +29,9 @@ const FAR: f64 = 0.5;
 /// Minimum radius ratio of an image's tetrahedra, and their minimum dihedral angle in degrees.
 const LEAST: f64 = 0.3;
 const LEAST_ANGLE: f64 = 16.0;
+/// The same for an image that has been improved: still better than the worst contoured forks.
+const MENDED: f64 = 0.2;
+const MENDED_ANGLE: f64 = 13.0;
 /// Minimum radius ratio of an image that is improved.
 const MENDABLE: f64 = 0.01;
 /// Tetrahedra with a larger radius ratio have larger angles.
@@ -96,7 +99,7 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let options = OptimizeOptions { fixed_points: canonical.boundary_points, ..OptimizeOptions::of(Effort::Fast) };
     optimize(&mut mesh, &options).ok()?;
-    if !is_above(&mesh, LEAST, LEAST_ANGLE) {
+    if !is_above(&mesh, MENDED, MENDED_ANGLE) {
         return None;
     }
     let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;

@@ -1,6 +1,6 @@
 //! Shape of a fork, and its cell.
 
-use crate::partition::{Cluster, ClusterEnd, CutId, EndKind, ForkCells};
+use crate::partition::{Cluster, ClusterEnd, CutId, EndKind, FORK_PLACES, ForkCell};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_skeleton::NodeId;
 use std::f64::consts::TAU;
@@ -53,15 +53,36 @@ pub struct Fork {
     pub limbs: [Limb; 3],
 }
 
-/// Number of coordinates of a shape.
-const PLACES: usize = 12;
-
-/// Cell of similar forks: sides of the ends, and steps of the coordinates ([`Fork::places`]).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Cell {
+/// Shape of a fork.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
     is_coarse: bool,
-    sides: [u8; 3],
-    steps: [i8; PLACES],
+    /// Sides of the ends of the vessels.
+    pub sides: [u8; 3],
+    /// Coordinates in steps of a cell.
+    places: [f32; FORK_PLACES],
+}
+
+impl Shape {
+    /// Cell that it is in; `None` if a step is out of range.
+    pub fn cell(&self) -> Option<ForkCell> {
+        let Self { is_coarse, sides, places } = *self;
+        let is_in_range = places.iter().all(|place| place.abs() <= 100.0);
+        is_in_range.then(|| ForkCell { is_coarse, sides, steps: places.map(|place| place.round() as i8) })
+    }
+
+    /// Square of the distance from the middle of a cell; `None` if a coordinate differs by more than `most`.
+    pub fn distance(&self, cell: &ForkCell, most: f32) -> Option<f32> {
+        let mut sum = 0.0;
+        for (place, &step) in self.places.iter().zip(&cell.steps) {
+            let along = (place - f32::from(step)).abs();
+            if along > most {
+                return None;
+            }
+            sum += along * along;
+        }
+        Some(sum)
+    }
 }
 
 impl Fork {
@@ -104,9 +125,10 @@ impl Fork {
         Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
     }
 
-    /// Coordinates of the shape in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
+    /// Shape, with its coordinates in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
     /// vessel.
-    fn places(&self, steps: Steps) -> Option<[f64; PLACES]> {
+    pub fn shape(&self, is_coarse: bool) -> Option<Shape> {
+        let steps = steps(is_coarse);
         let normal = self.normal()?;
         let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
         let azimuth = |limb: usize| {
@@ -114,56 +136,16 @@ impl Fork {
             libm::atan2(y, x) / steps.azimuth
         };
         let radius = |[r, of]: [f64; 2]| libm::log(r / of) / steps.radius;
-        let mut places = [0.0; PLACES];
+        let mut places = [0.0; FORK_PLACES];
         places[..3].copy_from_slice(&[normal.dot(&self.limbs[0].axis) / steps.height, azimuth(1), azimuth(2)]);
         for (limb, places) in self.limbs.iter().zip(places[3..].chunks_mut(3)) {
             let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / steps.length;
             let [near, far] = limb.radii;
             places.copy_from_slice(&[radius([near, self.radius]), radius([far, near]), length]);
         }
-        Some(places)
+        let sides = self.limbs.each_ref().map(|limb| limb.side);
+        Some(Shape { is_coarse, sides, places: places.map(|place| place as f32) })
     }
-
-    /// Cell of a fork; `None` if a step is out of range.
-    pub fn cell(&self, cells: ForkCells) -> Option<Cell> {
-        let (is_coarse, rank) = match cells {
-            ForkCells::None => return None,
-            ForkCells::Fine(rank) => (false, rank),
-            ForkCells::Coarse(rank) => (true, rank),
-        };
-        let places = self.places(steps(is_coarse))?;
-        let away = rounded_away(&places, rank);
-        let mut cell = Cell { is_coarse, sides: self.limbs.map(|limb| limb.side), steps: [0; PLACES] };
-        for (i, (step, place)) in cell.steps.iter_mut().zip(places).enumerate() {
-            let nearest = place.round();
-            let next = if place < nearest { nearest - 1.0 } else { nearest + 1.0 };
-            let chosen = if away >> i & 1 == 1 { next } else { nearest };
-            *step = (chosen.abs() <= 100.0).then_some(chosen as i8)?;
-        }
-        Some(cell)
-    }
-}
-
-/// Set of coordinates, as bits, that are rounded to the next step instead of the nearest one. Sets are ranked by the sum of
-/// the further distances.
-fn rounded_away(places: &[f64; PLACES], rank: u8) -> u16 {
-    let further = |i: usize| (1.0 - 2.0 * (places[i] - places[i].round()).abs(), i);
-    let mut costs: [(f64, usize); PLACES] = std::array::from_fn(further);
-    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Sets that may be next: sum, the last term, and the terms as bits. Each comes from a set with a smaller sum, with the
-    // next term beside the last one or in its place.
-    let mut open = vec![(costs[0].0, 0, 1_u16)];
-    let mut found = 0;
-    for _ in 0..rank {
-        let Some(least) = (0..open.len()).min_by(|&a, &b| open[a].0.total_cmp(&open[b].0)) else { break };
-        let (sum, last, terms) = open.swap_remove(least);
-        if let Some(&(cost, _)) = costs.get(last + 1) {
-            open.push((sum + cost, last + 1, terms | 1 << (last + 1)));
-            open.push((sum + cost - costs[last].0, last + 1, terms & !(1 << last) | 1 << (last + 1)));
-        }
-        found = terms;
-    }
-    (0..PLACES).filter(|i| found >> i & 1 == 1).fold(0, |bits, i| bits | 1 << costs[i].1)
 }
 
 /// Start and radii of the vessel that ends at a cut, if it is one tube.
@@ -178,62 +160,35 @@ fn vessel(cluster: &Cluster, end: &ClusterEnd) -> Option<(Point3, [f64; 2])> {
     Some(if tube.b == at { (tube.a, [tube.ra, tube.rb]) } else { (tube.b, [tube.rb, tube.ra]) })
 }
 
-impl Cell {
-    /// Fork in the middle of the cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the
-    /// extension beyond a cut, in radii. `stretch`: factor of all lengths.
-    pub fn cluster(&self, overrun: f64, stretch: f64) -> Cluster {
-        let steps = steps(self.is_coarse);
-        let place = |i: usize| f64::from(self.steps[i]);
-        let height = (steps.height * place(0)).clamp(-0.9, 0.9);
-        let across = (1.0 - height * height).sqrt();
-        let mut cluster = Cluster::default();
-        for i in 0..3 {
-            let azimuth = if i == 0 { 0.0 } else { steps.azimuth * place(i) };
-            let (y, x) = libm::sincos(azimuth);
-            let axis = Vec3::new(across * x, across * y, height);
-            let [radius, taper, length] = [0, 1, 2].map(|k| place(3 + 3 * i + k));
-            let [from, to] = [radius, radius + taper].map(|place| libm::exp(steps.radius * place));
-            let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * length);
-            let at = Point3::from(axis * length);
-            let index = cluster.tubes.len() as u32 + 1;
-            cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
-            cluster.tubes.push(Tube { a: at, b: at + axis * (overrun * to), ra: to, rb: to });
-            let section = Section { up: Some(Vec3::z()), ..Section::new(at, axis, to) };
-            let kind = match self.sides[i] {
-                TIP => EndKind::Terminal(NodeId(i as u32)),
-                side => EndKind::Cut { cut: CutId(i as u32), side },
-            };
-            cluster.ends.push(ClusterEnd { section, kind, overrun: index });
-        }
-        cluster
+/// Fork in the middle of a cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the extension
+/// beyond a cut, in radii. `stretch`: factor of all lengths.
+pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
+    let steps = steps(cell.is_coarse);
+    let place = |i: usize| f64::from(cell.steps[i]);
+    let height = (steps.height * place(0)).clamp(-0.9, 0.9);
+    let across = (1.0 - height * height).sqrt();
+    let mut cluster = Cluster::default();
+    for i in 0..3 {
+        let azimuth = if i == 0 { 0.0 } else { steps.azimuth * place(i) };
+        let (y, x) = libm::sincos(azimuth);
+        let axis = Vec3::new(across * x, across * y, height);
+        let [radius, taper, length] = [0, 1, 2].map(|k| place(3 + 3 * i + k));
+        let [from, to] = [radius, radius + taper].map(|place| libm::exp(steps.radius * place));
+        let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * length);
+        let at = Point3::from(axis * length);
+        let index = cluster.tubes.len() as u32 + 1;
+        cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
+        cluster.tubes.push(Tube { a: at, b: at + axis * (overrun * to), ra: to, rb: to });
+        let section = Section { up: Some(Vec3::z()), ..Section::new(at, axis, to) };
+        let kind = match cell.sides[i] {
+            TIP => EndKind::Terminal(NodeId(i as u32)),
+            side => EndKind::Cut { cut: CutId(i as u32), side },
+        };
+        cluster.ends.push(ClusterEnd { section, kind, overrun: index });
     }
+    cluster
 }
 
 fn steps(is_coarse: bool) -> Steps {
     if is_coarse { COARSE } else { FINE }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_are_ranked_by_distance() {
-        let places: [f64; PLACES] = std::array::from_fn(|i| 0.37 * i as f64 - 2.0);
-        let further = |bits: u16| -> f64 {
-            let cost = |i: usize| 1.0 - 2.0 * (places[i] - places[i].round()).abs();
-            (0..PLACES).filter(|i| bits >> i & 1 == 1).map(cost).sum()
-        };
-        let found: Vec<u16> = (0..=255).map(|rank| rounded_away(&places, rank)).collect();
-        // No set that is missing has a smaller distance than the last one.
-        let mut nearest: Vec<f64> = (0..1 << PLACES).map(further).collect();
-        nearest.sort_by(f64::total_cmp);
-        for (bits, distance) in found.iter().zip(nearest) {
-            assert!((further(*bits) - distance).abs() < 1e-9, "{bits:b}");
-        }
-        let mut distinct = found.clone();
-        distinct.sort_unstable();
-        distinct.dedup();
-        assert_eq!((distinct.len(), found[0]), (found.len(), 0));
-    }
 }

@@ -1,11 +1,12 @@
 use super::canonical::Canonical;
+use super::cells::shared_cells;
+use super::fork;
 use super::image::image;
-use super::shape::Fork;
-use super::{fork, shared_cells};
+use super::shape::{Fork, middle};
 use crate::block::contoured::contoured;
 use crate::block::topology::Topology;
 use crate::block::{BlockParams, EndStyle, Finished, mesh_cluster};
-use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, ForkCells};
+use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, ForkCell};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_mesh::quality::TetQuality;
 use anastomesh_skeleton::NodeId;
@@ -14,7 +15,7 @@ use nalgebra::Rotation3;
 
 /// Fork at a node: for each vessel its azimuth in degrees, length and radii at both ends. The first one ends at the node.
 fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [f64; 2]); 3]) -> Cluster {
-    let mut cluster = Cluster { cells: ForkCells::Fine(0), ..Cluster::default() };
+    let mut cluster = Cluster::default();
     let normal = turn * Vec3::z();
     for (i, (azimuth, length, radii)) in (0..).zip(vessels) {
         let (y, x) = libm::sincos(azimuth.to_radians());
@@ -26,7 +27,15 @@ fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [
         let kind = EndKind::Cut { cut: CutId(i), side: u8::from(i == 0) };
         cluster.ends.push(ClusterEnd { section, kind, overrun: 2 * i + 1 });
     }
-    cluster
+    in_own_cell(cluster)
+}
+
+fn own_cell(cluster: &Cluster) -> Option<ForkCell> {
+    Fork::of(cluster)?.shape(false)?.cell()
+}
+
+fn in_own_cell(cluster: Cluster) -> Cluster {
+    Cluster { cells: own_cell(&cluster).into_iter().collect(), ..cluster }
 }
 
 fn plain() -> [(f64, f64, [f64; 2]); 3] {
@@ -87,6 +96,7 @@ fn a_vessel_may_end_at_a_terminal() {
     let mut input = cluster(Point3::new(3.0, 2.0, 1.0), turned(0.7), 0.1, plain());
     input.ends[2].kind = EndKind::Terminal(NodeId(7));
     input.ends[2].section.up = None;
+    let input = in_own_cell(input);
     assert!(fork(&input, &shared()).is_some());
     let made = mesh_cluster(ClusterId(0), &input, &shared()).expect("a cluster");
     let block = Finished::of_cluster(made, |node| node.0).expect("its ends are on its boundary");
@@ -118,13 +128,11 @@ fn images_turn_with_their_forks() {
 #[test]
 fn the_middle_of_a_cell_is_its_own_image() {
     let params = shared();
-    let cell = Fork::of(&cluster(Point3::origin(), turned(0.5), 0.0, plain()))
-        .and_then(|fork| fork.cell(ForkCells::Fine(0)))
-        .expect("a cell");
+    let cell = own_cell(&cluster(Point3::origin(), turned(0.5), 0.0, plain())).expect("a cell");
     let canonical = Canonical::of(&cell, &params).expect("a canonical fork");
-    let middle = cell.cluster(2.0 * 1.6 / 3.0, 1.0);
+    let middle = middle(&cell, 2.0 * 1.6 / 3.0, 1.0);
     let fork = Fork::of(&middle).expect("a fork");
-    assert_eq!(fork.cell(ForkCells::Fine(0)), Some(cell));
+    assert_eq!(own_cell(&middle), Some(cell));
     let made = image(&canonical, &fork, &middle, &params).expect("an image");
     for (p, q) in canonical.points.iter().zip(&made.mesh.points) {
         assert!((p - q).norm() < 1e-2, "{p} {q}");
@@ -168,29 +176,32 @@ fn other_clusters_are_no_forks() {
 }
 
 #[test]
-fn only_forks_with_many_alike_have_a_cell() {
+fn forks_are_images_of_the_nearest_shared_cells() {
     let fork = |azimuth: f64, radius: f64| {
         let mut vessels = plain();
         (vessels[1].0, vessels[1].2) = (azimuth, [radius; 2]);
-        let cluster = cluster(Point3::origin(), turned(azimuth), 0.0, vessels);
-        Cluster { cells: ForkCells::None, ..cluster }
+        cluster(Point3::origin(), turned(azimuth), 0.0, vessels)
     };
-    // Four in one fine cell; three in another and one beside it; three in three fine cells of one coarse cell; one alone.
+    // Four in one small cell; four in another and one beside it; four in four small cells of one large cell; one alone.
     let alike = (0..4).map(|i| fork(122.0 + f64::from(i), 0.95));
-    let similar = [95.0, 96.0, 104.0, 92.0].map(|azimuth| fork(azimuth, 0.5));
-    let loose = [(92.0, 0.3), (92.0, 0.33), (102.0, 0.3)].map(|(azimuth, radius)| fork(azimuth, radius));
+    let similar = [95.0, 96.0, 98.0, 104.0, 92.0].map(|azimuth| fork(azimuth, 0.5));
+    let loose = [(92.0, 0.3), (92.0, 0.33), (102.0, 0.3), (102.0, 0.33)].map(|(azimuth, radius)| fork(azimuth, radius));
     let clusters: Vec<Cluster> = alike.chain(similar).chain(loose).chain([fork(150.0, 0.1)]).collect();
     let cells_of = |count: u32| shared_cells(count, |i| clusters[i as usize].clone());
-    let cells = cells_of(12);
-    assert_eq!(cells[..7], [ForkCells::Fine(0); 7]);
-    assert!(matches!(cells[7], ForkCells::Fine(1..)), "{:?}", cells[7]);
-    assert_eq!(cells[8..11], [ForkCells::Coarse(0); 3]);
-    assert_eq!(cells[11], ForkCells::None);
-    assert_eq!(cells_of(2), [ForkCells::None; 2]);
-    assert!(fork_of(&clusters[0], ForkCells::Fine(0)).is_some() && fork_of(&clusters[0], ForkCells::None).is_none());
-    assert!(fork_of(&clusters[7], cells[7]).is_some());
-}
-
-fn fork_of(cluster: &Cluster, cells: ForkCells) -> Option<super::image::FilledFork> {
-    fork(&Cluster { cells, ..cluster.clone() }, &shared())
+    let cells = cells_of(14);
+    let own = |i: u32| vec![own_cell(&clusters[i as usize]).expect("a cell")];
+    assert_eq!(cells.chosen.len(), 3);
+    for (forks, cell) in [(0..4, own(0)), (4..9, own(4))] {
+        forks.for_each(|i| assert_eq!(cells.of(i), cell, "{i}"));
+    }
+    assert_ne!(own(8), own(4));
+    for i in 9..13 {
+        assert!(matches!(cells.of(i)[..], [ForkCell { is_coarse: true, .. }]), "{i}");
+    }
+    assert!(cells.of(13).is_empty() && cells_of(3).chosen.is_empty());
+    let image =
+        |i: u32, cells: Vec<ForkCell>| super::fork(&Cluster { cells, ..clusters[i as usize].clone() }, &shared());
+    assert!(image(0, own(0)).is_some() && image(0, Vec::new()).is_none() && image(8, cells.of(8)).is_some());
+    // The second cell is tried if the first one has no image of the fork.
+    assert!(image(0, vec![own(13)[0], own(0)[0]]).is_some() && image(0, own(13)).is_none());
 }
