@@ -29,7 +29,7 @@ const FAR: f64 = 0.5;
 /// Minimum radius ratio of an image's tetrahedra, and their minimum dihedral angle in degrees.
 const LEAST: f64 = 0.3;
 const LEAST_ANGLE: f64 = 16.0;
-/// The same for an image that has been improved: still better than the worst contoured forks.
+/// Minima for an image that has been improved: it is still better than the worst contoured forks.
 const MENDED: f64 = 0.2;
 const MENDED_ANGLE: f64 = 13.0;
 /// Minimum radius ratio of an image that is improved.
@@ -122,7 +122,7 @@ fn moved(p: &Point3, from: &Fork, to: &Fork) -> Point3 {
 }
 
 /// Logarithm of a limb's weight, over [`SHARPNESS`]: the share of its length, less what a point is beyond its end or beside
-/// it. A long limb passes the end of a short one that is at a small angle with it.
+/// it. A long limb may pass the end of a short one.
 fn score(w: &Vec3, share: f64, limb: &Limb) -> f64 {
     let [near, far] = limb.radii;
     let radius = near + (far - near) * share.clamp(0.0, 1.0);

@@ -18,8 +18,8 @@ pub struct Link {
 }
 
 impl Link {
-    /// `None` if the part is not sound, connected and bounded by one surface. Also if an edge of its wall or a face of a
-    /// tetrahedron has all of its vertices in a joint, but is not in it: the next link may have it, too.
+    /// `None` if the part is not sound, connected and bounded by one surface. Also if an edge or a face of a tetrahedron has all
+    /// of its vertices in a joint, but is not in it. The next link may have it, too.
     pub fn new(part: &PartView) -> Option<Self> {
         let [first, second] = part.joints else { return None };
         let certificate = certify_with(part, || tet_adjacency(&part.mesh.tets, part.mesh.points.len()));
