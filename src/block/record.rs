@@ -256,12 +256,20 @@ impl<'a, B: Bytes + ?Sized> Record<'a, B> {
     /// Reads the head.
     ///
     /// # Errors
-    /// The head cannot be read.
+    /// The head cannot be read, or the record is shorter than it says. So no later request allocates more than a record has.
     pub fn open(bytes: &'a B) -> io::Result<Self> {
-        let first = bytes.get(0..bytes.count()?.min(FIRST))?;
+        let count = bytes.count()?;
+        let first = bytes.get(0..count.min(FIRST))?;
         let head = words(first.get(..4 * HEAD).ok_or_else(cut_short)?);
         let counts: [u32; HEAD] = head.try_into().map_err(|_| cut_short())?;
-        Ok(Self { bytes, first, sizes: Sizes::from_counts(counts) })
+        let sizes = Sizes::from_counts(counts);
+        if sizes.bytes() > count {
+            return Err(cut_short());
+        }
+        if sizes.shared > sizes.points {
+            return Err(damaged());
+        }
+        Ok(Self { bytes, first, sizes })
     }
 
     /// Sizes of the block.

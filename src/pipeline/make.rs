@@ -119,9 +119,6 @@ impl Workshop<'_> {
 
     fn kept(&self, record: RecordId) -> io::Result<StoredBlock> {
         let sizes = Record::open(&self.store.bytes(record))?.sizes();
-        if sizes.shared > sizes.points {
-            return Err(io::ErrorKind::InvalidData.into());
-        }
         Ok(StoredBlock { record, points: sizes.points - sizes.shared, tets: sizes.tets })
     }
 
