@@ -4,13 +4,13 @@
 //! A spur within a thick vessel is no loss, and a thin branch of the same length is one.
 
 use anastomesh_mesh::Cap;
-use anastomesh_network::{PrepareReport, RefineReport, TouchedBy, Treatment};
+use anastomesh_network::{PrepareReport, RefineReport, TouchedBy, TouchingTip, Treatment};
 use anastomesh_skeleton::Tubes;
 use anastomesh_skeleton::{Branch, NodeId, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 
-/// Minimum displacement of a node, in its radii, that counts as moved.
+/// Minimum displacement of a node, or of a line from that with which it was merged, in its radii, that counts as a change.
 const MOVED: f64 = 0.05;
 /// Minimum displacement of a cap, in its radii, that counts as extended.
 const EXTENDED: f64 = 0.1;
@@ -34,7 +34,7 @@ pub struct Change {
 
 impl Change {
     /// Adds a change to those of a kind.
-    fn add(kind: &mut Option<Self>, size: f64, node: u32) {
+    pub(crate) fn add(kind: &mut Option<Self>, size: f64, node: u32) {
         let Some(all) = kind else {
             *kind = Some(Self { count: 1, worst: size, node });
             return;
@@ -58,8 +58,12 @@ pub struct Changes {
     pub filled: Option<Change>,
     /// Tips whose cap lies beyond the given end, in lengths of their vessel.
     pub extended: Option<Change>,
+    /// Lines that were merged with others, by their largest distance from these, in radii.
+    pub merged: Option<Change>,
     /// Bifurcations joined within one lumen, by their distance in the unit of the network.
     pub joined: Option<Change>,
+    /// Blocks in which overlapping vessels are one lumen, by their number of nodes.
+    pub one_lumen: Option<Change>,
     /// Loops closed within one lumen, by their length in the unit of the network.
     pub fused: Option<Change>,
     /// Vessels that were dropped or shortened, by their missing length outside the lumen, in radii of the vessel.
@@ -80,7 +84,9 @@ impl Changes {
     pub(crate) fn of(given: &Skeleton, prepared: &Skeleton, made: &Skeleton, repairs: Repairs, caps: &[Cap]) -> Self {
         let Repairs { prepare, refine } = repairs;
         let mut changes = Self::default();
-        let tips: FxHashSet<u32> = prepare.touching.iter().map(|t| t.tip).collect();
+        // Where a repair put a tip is no move of the refinement.
+        let is_moved = |t: &&TouchingTip| t.done != TouchedBy::Left;
+        let tips: FxHashSet<u32> = prepare.touching.iter().filter(is_moved).map(|t| t.tip).collect();
         if let Some(refine) = refine {
             changes.move_nodes(prepared, made, &tips);
             for pair in &refine.residual.pairs {
@@ -91,6 +97,9 @@ impl Changes {
         }
         for radius in &prepare.radii {
             Change::add(&mut changes.filled, radius.filled, radius.node);
+        }
+        for line in prepare.merge.merged.iter().filter(|line| line.apart > MOVED) {
+            Change::add(&mut changes.merged, line.apart, line.nodes[0]);
         }
         for l in &prepare.joined.loops {
             Change::add(&mut changes.fused, l.length, l.nodes[0]);
@@ -294,6 +303,31 @@ mod tests {
         let dropped = of(&given, &made, &prepare, &[]).dropped.expect("a loss");
         assert!((dropped.worst - 15.6).abs() < 0.5 && dropped.node == 3 && dropped.count == 1, "{dropped:?}");
         assert_eq!(of(&given, &given, &prepare, &[]).dropped, None);
+    }
+
+    #[test]
+    fn merged_lines_count_unless_they_coincide() {
+        let given = forked();
+        let mut prepare = PrepareReport::default();
+        let run = |apart| Merged { nodes: [1, 3], with: [0, 1], length: 10.0, apart, partings: Vec::new() };
+        prepare.merge.merged.extend([run(0.01), run(0.9), run(0.3)]);
+        let merged = of(&given, &given, &prepare, &[]).merged;
+        assert_eq!(merged, Some(Change { count: 2, worst: 0.9, node: 1 }));
+    }
+
+    #[test]
+    fn a_tip_that_touches_a_vessel_and_was_left_there_counts_once_refinement_moves_it() {
+        let given = forked();
+        let mut made = given.clone();
+        made.nodes[3].position.x += 1.0;
+        let report = RefineReport::default();
+        let moved = |done| {
+            let tip = TouchingTip { tip: 3, with: [0, 1], done };
+            let prepare = PrepareReport { touching: vec![tip], ..PrepareReport::default() };
+            Changes::of(&given, &given, &made, Repairs { prepare: &prepare, refine: Some(&report) }, &[]).moved
+        };
+        assert_eq!(moved(TouchedBy::Left), Some(Change { count: 1, worst: 2.0, node: 3 }));
+        assert_eq!(moved(TouchedBy::Joined), None);
     }
 
     #[test]

@@ -100,7 +100,9 @@ impl Changes {
             kind(self.shrunk, "pair", "shrunk", &|x| format!("by {}", share(x))),
             kind(self.filled, "radius value", "filled", &|x| number(x)),
             kind(self.extended, "tip", "extended", &|x| format!("by {} of its vessel", share(x))),
+            kind(self.merged, "line", "merged with others", &|x| format!("{} apart", in_radii(x))),
             kind(self.joined, "bifurcation", "joined within one lumen", &|x| format!("distance {}", number(x))),
+            kind(self.one_lumen, "block", "with overlapping vessels in one lumen", &|x| counted(x as usize, "node")),
             kind(self.fused, "loop", "fused within one lumen", &|x| format!("length {}", number(x))),
             kind(self.dropped, "vessel", "dropped or shortened", &|x| format!("{} radii outside the lumen", radii(x))),
         ];

@@ -5,7 +5,7 @@ use super::error::MeshingError;
 use super::limits::Limits;
 use super::networks::Networks;
 use super::strategy::Attempt;
-use crate::fidelity::{Changes, Displaced, Fidelity, Repairs};
+use crate::fidelity::{Change, Changes, Displaced, Fidelity, Repairs};
 use crate::pipeline::{Clock, MeshPlan, Meshed, RunReport};
 use anastomesh_flow::{Caps, FlowPlan};
 use anastomesh_io::volume::MeshNotes;
@@ -38,7 +38,7 @@ pub struct NetworkMesh<M> {
     pub kept: usize,
     /// Comparison of the mesh with the given network; `None` if the plan is hollow.
     pub fidelity: Option<Fidelity>,
-    /// Changes of the given network: what was moved, shrunk, extended, fused or dropped.
+    /// Changes of the given network: what was moved, shrunk, merged, extended, fused or dropped.
     pub changes: Changes,
     /// Inlets and outlets with their one-dimensional flow; `None` if the plan is hollow.
     pub caps: Option<Caps>,
@@ -116,6 +116,10 @@ impl<M: MeshSource> NetworkMesh<M> {
         let Networks { given, prepared, prepare, refine, .. } = &self.networks;
         let repairs = Repairs { prepare, refine: refine.as_ref() };
         self.changes = Changes::of(given, prepared, &self.network, repairs, &caps);
+        for block in &self.report.fused {
+            let node = block.nodes.first().copied().unwrap_or_default();
+            Change::add(&mut self.changes.one_lumen, block.nodes.len() as f64, node);
+        }
         self.defects = self.find_defects(plan, limits);
         self.excused = self.fidelity.as_ref().and_then(|fidelity| limits.excused(repairs, fidelity, &self.defects));
         Ok(self)

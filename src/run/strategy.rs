@@ -8,7 +8,7 @@ use crate::pipeline::{Estimate, MeshPlan, Meshed, RunError, RunReport, Store, To
 use anastomesh_mesh::check::{CheckReport, Line};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_network::touching_text;
-use anastomesh_network::{Freedom, RefineParams, refine};
+use anastomesh_network::{Freedom, RefineParams, Residual, refine};
 use anastomesh_skeleton::NodeId;
 use anastomesh_skeleton::Tubes;
 use serde::Serialize;
@@ -50,6 +50,8 @@ pub enum Strategy {
     WiderClearance,
     /// The network of the best attempt before, with finer edges.
     FinerEdges,
+    /// The network of the best attempt before, with vessels that overlap as one lumen.
+    Fused,
 }
 
 impl Strategy {
@@ -139,14 +141,16 @@ pub(super) struct Meshing<'a, 'b> {
 ///
 /// A sound mesh of the network as given is kept, and nothing is moved. Otherwise the network is refined. If that gives no
 /// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one. If only
-/// walls intersect that belong to vessels which do not overlap, finer edges are tried.
+/// walls intersect that belong to vessels which do not overlap, finer edges are tried. If the network was to be refined
+/// and no mesh is valid, vessels that still overlap are fused.
 pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let best = if meshing.refine.is_some() && networks.refine.is_none() {
-        as_given_or_refined(&networks, meshing)?
+        as_given_or_refined(&networks, meshing)
     } else {
-        planned(networks, true, meshing).map_err(Failure::into_error)?
+        planned(networks, true, meshing).map_err(Failure::into_error)
     };
-    finer(best, meshing)
+    let best = best.and_then(|best| finer(best, meshing));
+    fused(best, meshing)
 }
 
 /// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
@@ -163,18 +167,24 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
         }
         other => other.and_then(Result::ok),
     };
-    if let Some(local) = meshing.with_overlaps_moved(networks)? {
-        return Ok(local);
-    }
+    let local = match meshing.with_overlaps_moved(networks)? {
+        Some(local) if meshing.attempts[local.attempt].fault.is_none() => return Ok(local),
+        local => local,
+    };
     let networks = (meshing.refined)(networks)?;
-    match (as_given, planned(networks, !may_be_sound, meshing)) {
-        (Some(as_given), Err(Failure { error: RunError::BlocksFailed(_), .. })) => Ok(as_given),
-        (Some(as_given), Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
+    let planned = planned(networks, !may_be_sound, meshing);
+    let is_valid = |made: &Candidate| meshing.fault_of(&made.stored).is_none();
+    match (as_given, local, planned) {
+        (_, _, Err(failure)) if !matches!(failure.error, RunError::BlocksFailed(_)) => Err(failure.into_error()),
+        // Its lumen has another size, but no other mesh is valid.
+        (as_given, Some(local), planned) if is_valid(&local) && !as_given.iter().chain(&planned).any(is_valid) => Ok(local),
+        (Some(as_given), _, Err(_)) => Ok(as_given),
+        (Some(as_given), _, Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
             let why = "refinement gives a mesh that differs more from the given network: nothing was moved";
             meshing.progress.note(why);
             Ok(as_given)
         }
-        (_, planned) => planned.map_err(Failure::into_error),
+        (_, _, planned) => planned.map_err(Failure::into_error),
     }
 }
 
@@ -213,11 +223,7 @@ fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candi
     }
     for factor in FINER {
         let plan = MeshPlan { rho: factor * meshing.plan.rho, ..meshing.plan.clone() };
-        let attempts = std::mem::take(&mut meshing.attempts);
-        let mut finer = Meshing { plan: &plan, attempts, refine: meshing.refine.clone(), ..*meshing };
-        let made = finer.attempt(Strategy::FinerEdges, best.networks.clone());
-        meshing.attempts = finer.attempts;
-        match made {
+        match meshing.attempt_by(&plan, Strategy::FinerEdges, best.networks.clone()) {
             Ok(candidate) if meshing.fault_of(&candidate.stored).is_none() => {
                 let rho = plan.rho;
                 meshing
@@ -230,6 +236,32 @@ fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candi
         }
     }
     Ok(best)
+}
+
+/// Meshes with overlapping vessels fused if the network was to be refined, and no attempt gave a valid mesh.
+fn fused<'a>(
+    best: Result<Candidate<'a>, MeshingError>,
+    meshing: &mut Meshing<'a, '_>,
+) -> Result<Candidate<'a>, MeshingError> {
+    let networks = match &best {
+        Ok(made) if meshing.fault_of(&made.stored).is_some() => &made.networks,
+        Err(MeshingError::Blocks { networks, .. }) => networks,
+        _ => return best,
+    };
+    let network = &networks.network;
+    let may_fuse = !meshing.plan.fuse && meshing.refine.as_ref().is_some_and(|of| of.residual == Residual::Shrink);
+    if !may_fuse || meshing.store.is_hopeless() || network.overlaps(&network.adjacency()).pairs.is_empty() {
+        return best;
+    }
+    let plan = MeshPlan { fuse: true, ..meshing.plan.clone() };
+    match meshing.attempt_by(&plan, Strategy::Fused, networks.clone()) {
+        Ok(candidate) if fault(&candidate.stored.check, &candidate.stored.report, &plan).is_none() => {
+            meshing.progress.note("no mesh with overlapping vessels apart is valid: they were meshed as one lumen");
+            Ok(candidate)
+        }
+        Err(failure) if failure.stops() => Err(failure.into_error()),
+        Ok(_) | Err(_) => best,
+    }
 }
 
 /// Fault of a mesh but for its volume.
@@ -282,7 +314,7 @@ impl<'a> Meshing<'a, '_> {
         }
     }
 
-    /// Meshes a grown network of which only overlapping vessels were moved; `None` if many overlap, or the mesh is not sound.
+    /// Meshes a grown network of which only overlapping vessels were moved; `None` if many overlap, or there is no mesh.
     fn with_overlaps_moved(&mut self, networks: &Networks) -> Result<Option<Candidate<'a>>, MeshingError> {
         let Some(params) = self.refine.clone().filter(|params| params.freedom == Freedom::Auto) else {
             return Ok(None);
@@ -293,8 +325,7 @@ impl<'a> Meshing<'a, '_> {
         let refined = refine(&networks.prepared, &params.freedom(Freedom::Measured), self.progress)?;
         match self.attempt(Strategy::OverlapsMoved, networks.again(Some(refined))) {
             Err(failure) if failure.stops() => Err(failure.into_error()),
-            Ok(candidate) if self.attempts[candidate.attempt].fault.is_none() => Ok(Some(candidate)),
-            Ok(_) | Err(_) => Ok(None),
+            made => Ok(made.ok()),
         }
     }
 
@@ -326,6 +357,15 @@ impl<'a> Meshing<'a, '_> {
 
     fn fault_of(&self, stored: &Meshed<Whole>) -> Option<Fault> {
         fault(&stored.check, &stored.report, self.plan)
+    }
+
+    /// Meshes a network by another plan.
+    fn attempt_by(&mut self, plan: &MeshPlan, strategy: Strategy, networks: Networks) -> Outcome<'a> {
+        let attempts = std::mem::take(&mut self.attempts);
+        let mut other = Meshing { plan, attempts, refine: self.refine.clone(), ..*self };
+        let made = other.attempt(strategy, networks);
+        self.attempts = other.attempts;
+        made
     }
 
     /// Meshes a network, and again as long as terminals that could not be capped can be retracted.
