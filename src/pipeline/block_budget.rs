@@ -11,7 +11,7 @@ use anastomesh_tet::parts::Watch;
 
 /// Maximum operations of an attempt: a constant, plus a number per expected operation. Attempts that succeed take at most
 /// three times the expected operations on the shared networks.
-const ATTEMPT: Effort = Effort { constant: 3e7, per_operation: 8.0 };
+const ATTEMPT: Effort = Effort::linear(3e7, 8.0);
 
 /// Budget of a cluster.
 pub(super) struct BlockBudget<'a> {
@@ -25,7 +25,7 @@ impl<'a> BlockBudget<'a> {
     /// Budget of a cluster's attempts.
     pub(super) fn of(id: ClusterId, cluster: &Cluster, plan: &'a MeshPlan, effort: Effort, watch: &'a Watch) -> Self {
         let usual = attempt_cost(cluster, plan, &plan.block_params());
-        Self { id, plan, all: Budget::new(limit(effort, usual.operations)), watch }
+        Self { id, plan, all: Budget::new(effort.limit(usual.operations)), watch }
     }
 
     /// True if no further attempt may be made.
@@ -57,17 +57,12 @@ impl<'a> BlockBudget<'a> {
             let source = if self.watch.is_cancelled() { Stop::Cancelled } else { over.into() };
             return Err(BlockError::Stopped { cluster: self.id, source });
         }
-        let own = Budget::new(limit(ATTEMPT, cost.operations).min(self.all.left()));
+        let own = Budget::new(ATTEMPT.limit(cost.operations).min(self.all.left()));
         let made = make(&self.watch.within(&own));
         // The next attempt, if any, finds out.
         let _ = self.all.spend(own.spent());
         made
     }
-}
-
-/// Casts of what is too large end at the largest integer.
-fn limit(effort: Effort, operations: f64) -> u64 {
-    (effort.constant + effort.per_operation * operations) as u64
 }
 
 #[cfg(test)]
@@ -81,7 +76,7 @@ mod tests {
         let (cluster, plan, watch) = (bifurcation(3), MeshPlan::default(), Watch::NOBODY);
         let params = plan.block_params();
         let of = |constant: f64| {
-            let effort = Effort { constant, per_operation: 0.0 };
+            let effort = Effort::linear(constant, 0.0);
             let budget = BlockBudget::of(ClusterId(7), &cluster, &plan, effort, &watch);
             let make = |watch: &Watch| once::cluster(ClusterId(7), &cluster, &params, |node| node.0, watch);
             (budget.attempt(&cluster, &params, make), budget.spent(), budget.is_over())

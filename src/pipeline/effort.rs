@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Operations of failed blocks after which further blocks get a reduced budget: a constant, plus a number per expected
 /// operation of the run. The expected operations alone take the time of the estimate.
-const MUCH: [f64; 2] = [6e8, 10.0];
+const MUCH: [f64; 2] = [6e8, 4.0];
 
 /// Multiple of [`MUCH`] after which no other partition or network is tried.
 const HOPELESS: u64 = 2;
@@ -16,21 +16,45 @@ const ALL_CLUSTERS: f64 = 2e10;
 /// Bounds of a cluster's share of it. The smaller one lets a bifurcation be tried in every way.
 const CLUSTER: [f64; 2] = [3e7, 1e8];
 
+/// Expected operations of an attempt from which a cluster is large: about half a second.
+const LARGE: f64 = 2e7;
+
+/// Number of operations per expected one beyond that: further attempts at a large cluster rarely differ.
+const PER_OPERATION_OF_LARGE: f64 = 4.0;
+
 /// Maximum operations of all attempts at a cluster: a constant, plus a number per expected operation of the usual one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     pub constant: f64,
     pub per_operation: f64,
+    /// Number per expected operation beyond those of a [`LARGE`] cluster.
+    pub per_operation_of_large: f64,
 }
 
 impl Effort {
     /// Effort per cluster where failures are rare.
     pub fn full(clusters: usize) -> Self {
-        Self { constant: (ALL_CLUSTERS / clusters.max(1) as f64).clamp(CLUSTER[0], CLUSTER[1]), per_operation: 25.0 }
+        Self {
+            constant: (ALL_CLUSTERS / clusters.max(1) as f64).clamp(CLUSTER[0], CLUSTER[1]),
+            per_operation: 25.0,
+            per_operation_of_large: PER_OPERATION_OF_LARGE,
+        }
+    }
+
+    /// Effort in proportion to the expected operations, beyond a constant.
+    pub const fn linear(constant: f64, per_operation: f64) -> Self {
+        Self { constant, per_operation, per_operation_of_large: per_operation }
+    }
+
+    /// Maximum operations. Casts of what is too large end at the largest integer.
+    pub fn limit(self, expected: f64) -> u64 {
+        let small = expected.min(LARGE);
+        let large = expected - small;
+        (self.constant + self.per_operation * small + self.per_operation_of_large * large) as u64
     }
 
     /// Effort where they are not.
-    const REDUCED: Self = Self { constant: 1e7, per_operation: 4.0 };
+    const REDUCED: Self = Self::linear(1e7, 4.0);
 }
 
 /// Operations that a run expects, and those of blocks that failed. Only failed blocks count: they are made again by a run
@@ -81,12 +105,21 @@ mod tests {
         ledger.expect(1e9);
         ledger.expect(1e8);
         assert_eq!(ledger.effort(10), Effort::full(10));
-        ledger.add(10_500_000_000);
+        ledger.add(4_500_000_000);
         assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::full(10), false));
         ledger.add(1_000_000_000);
         assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::REDUCED, false));
-        ledger.add(11_000_000_000);
+        ledger.add(4_500_000_000);
         assert!(ledger.is_hopeless());
+    }
+
+    #[test]
+    fn large_clusters_get_few_attempts() {
+        let effort = Effort { constant: 1.0, per_operation: 25.0, per_operation_of_large: 4.0 };
+        let limits = [0.0, LARGE, 3.0 * LARGE].map(|expected| effort.limit(expected));
+        assert_eq!(limits, [1, 1 + 25 * LARGE as u64, 1 + 33 * LARGE as u64]);
+        assert_eq!(Effort::linear(2.0, 3.0).limit(10.0 * LARGE), 2 + 30 * LARGE as u64);
+        assert_eq!(effort.limit(f64::INFINITY), u64::MAX);
     }
 
     #[test]
