@@ -20,7 +20,7 @@ const CLUSTER: [f64; 2] = [3e7, 1e8];
 const LARGE: f64 = 2e7;
 
 /// Number of operations per expected one beyond that: further attempts at a large cluster rarely differ.
-const PER_OPERATION_OF_LARGE: f64 = 4.0;
+const PER_OPERATION_OF_LARGE: f64 = 3.0;
 
 /// Maximum operations of all attempts at a cluster: a constant, plus a number per expected operation of the usual one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -93,6 +93,11 @@ impl Networks {
         self.refined = Some(Arc::new(RefinedAxis { skeleton: Arc::clone(&self.network), origin }));
     }
 
+    /// Takes the reports of a refinement that moved nothing.
+    pub(super) fn refined_as(&mut self, other: Self) {
+        (self.refine, self.refined) = (other.refine, other.refined);
+    }
+
     /// Networks of another attempt: the prepared network, as it is or refined.
     pub(super) fn again(&self, refined: Option<Refined>) -> Self {
         let mut again = Self { network: Arc::clone(&self.prepared), refine: None, refined: None, ..self.clone() };

@@ -147,7 +147,8 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
     let best = if meshing.refine.is_some() && networks.refine.is_none() {
         as_given_or_refined(&networks, meshing)
     } else {
-        planned(networks, true, meshing).map_err(Failure::into_error)
+        let planned = meshing.attempt(Strategy::Planned, networks);
+        or_fallback(planned, true, meshing).map_err(Failure::into_error)
     };
     let best = best.and_then(|best| finer(best, meshing));
     fused(best, meshing)
@@ -156,7 +157,8 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
 /// Meshes a network as given, and refined if that gives no sound mesh; the better one is kept.
 fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let may_be_sound = networks.may_be_sound_as_given();
-    let as_given = match may_be_sound.then(|| meshing.attempt(Strategy::AsGiven, networks.clone())) {
+    let mut as_given = may_be_sound.then(|| meshing.attempt(Strategy::AsGiven, networks.clone()));
+    match as_given {
         Some(Ok(candidate)) if meshing.attempts[candidate.attempt].fault.is_none() => {
             meshing.progress.note("the network gives a valid mesh as it is: nothing was moved");
             return Ok(candidate);
@@ -165,14 +167,26 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
         Some(Err(failure)) if failure.stops() || failure.is_final(|| meshing.lengthens(networks)) => {
             return Err(failure.into_error());
         }
-        other => other.and_then(Result::ok),
-    };
+        _ => {}
+    }
     let local = match meshing.with_overlaps_moved(networks)? {
         Some(local) if meshing.attempts[local.attempt].fault.is_none() => return Ok(local),
         local => local,
     };
-    let networks = (meshing.refined)(networks)?;
-    let planned = planned(networks, !may_be_sound, meshing);
+    let refined = (meshing.refined)(networks)?;
+    // Where nothing moves, the first attempt is that of the refined network, too.
+    let first = match as_given.take_if(|_| refined.network == networks.network) {
+        Some(mut same) => {
+            match &mut same {
+                Ok(candidate) => candidate.networks.refined_as(refined),
+                Err(failure) => failure.networks.refined_as(refined),
+            }
+            same
+        }
+        None => meshing.attempt(Strategy::Planned, refined),
+    };
+    let planned = or_fallback(first, !may_be_sound, meshing);
+    let as_given = as_given.and_then(Result::ok);
     let is_valid = |made: &Candidate| meshing.fault_of(&made.stored).is_none();
     match (as_given, local, planned) {
         (_, _, Err(failure)) if !matches!(failure.error, RunError::BlocksFailed(_)) => Err(failure.into_error()),
@@ -188,10 +202,8 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
     }
 }
 
-/// Meshes a network, and fallbacks if it was refined and gives no sound mesh. `unrefined`: the network before refinement is a
-/// fallback.
-fn planned<'a>(networks: Networks, unrefined: bool, meshing: &mut Meshing<'a, '_>) -> Outcome<'a> {
-    let first = meshing.attempt(Strategy::Planned, networks);
+/// Meshes fallbacks if a refined network gave no sound mesh. `unrefined`: the network before refinement is a fallback.
+fn or_fallback<'a>(first: Outcome<'a>, unrefined: bool, meshing: &mut Meshing<'a, '_>) -> Outcome<'a> {
     let (fault, networks) = match &first {
         Ok(candidate) => (meshing.attempts[candidate.attempt].fault, &candidate.networks),
         Err(Failure { error, networks }) => {
