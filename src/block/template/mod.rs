@@ -10,6 +10,7 @@ mod canonical;
 mod joined;
 #[cfg(test)]
 mod tests;
+mod wafer;
 
 use super::hull::hull;
 use super::params::BlockParams;
@@ -26,7 +27,7 @@ use std::sync::Arc;
 
 /// Maximum template length, in radii. Inner discs are flat, and their neighbours slightly worse than others.
 const LONGEST: f64 = 12.0;
-/// Minimum template length, in radii.
+/// Minimum template length, in radii. A shorter vessel between two caps has one layer of tetrahedra.
 const SHORTEST: f64 = 0.5;
 /// Maximum twist of the map, in radians per radius of length.
 const TWIST: f64 = 0.15;
@@ -81,6 +82,9 @@ pub fn tube(path: &[Section], discs: &[SharedDisc; 2], caps: [bool; 2], params: 
     let rotation = (twist / corner).round();
     let twist = twist - rotation * corner;
     let length = radii[radii.len() - 1];
+    if length < SHORTEST && caps == [true; 2] && rotation == 0.0 && params.layers.is_none() {
+        return wafer::wafer(discs);
+    }
     if !(length.is_finite() && length >= SHORTEST && twist.abs() <= TWIST * length) {
         return None;
     }
