@@ -191,7 +191,9 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
     match (as_given, local, planned) {
         (_, _, Err(failure)) if !matches!(failure.error, RunError::BlocksFailed(_)) => Err(failure.into_error()),
         // Its lumen has another size, but no other mesh is valid.
-        (as_given, Some(local), planned) if is_valid(&local) && !as_given.iter().chain(&planned).any(is_valid) => Ok(local),
+        (as_given, Some(local), planned) if is_valid(&local) && !as_given.iter().chain(&planned).any(is_valid) => {
+            Ok(local)
+        }
         (Some(as_given), _, Err(_)) => Ok(as_given),
         (Some(as_given), _, Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
             let why = "refinement gives a mesh that differs more from the given network: nothing was moved";

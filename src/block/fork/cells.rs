@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 
 /// Minimum number of forks in a cell with a canonical fork, which takes about as long as a contoured one.
 const MANY: u32 = 4;
-/// Maximum distance of a fork from the middle of its cells in each coordinate, in steps.
-const NEAR: f32 = 1.25;
+/// Maximum distance of a fork from the middle of its small and large cells in each coordinate, in steps.
+const NEAR: [f32; 2] = [1.25, 2.0];
 
 /// Cells of the clusters of a network. Cells that many forks are in are chosen: small ones, then large ones for the forks
 /// that are near none of these.
@@ -26,8 +26,9 @@ pub fn shared_cells(count: u32, cluster: impl Fn(u32) -> Cluster + Sync) -> Fork
         let mut chosen: Vec<ForkCell> = many.map(|(cell, _)| cell).collect();
         chosen.sort_unstable();
         let first = cells.chosen.len() as u32;
-        let nearest =
-            |(i, shape): &(u32, Shape)| (*i, nearest(shape, &chosen).map(|cell| cell.map(|cell| first + cell)));
+        let nearest = |(i, shape): &(u32, Shape)| {
+            (*i, nearest(shape, &chosen, NEAR[usize::from(is_coarse)]).map(|cell| cell.map(|cell| first + cell)))
+        };
         for (i, nearest) in shapes.par_iter().map(nearest).collect::<Vec<_>>() {
             cells.nearest[i as usize] = nearest;
         }
@@ -36,13 +37,15 @@ pub fn shared_cells(count: u32, cluster: impl Fn(u32) -> Cluster + Sync) -> Fork
     cells
 }
 
-/// Places in a sorted list of the two nearest cells with the same sides.
-fn nearest(shape: &Shape, chosen: &[ForkCell]) -> [Option<u32>; 2] {
-    let first = chosen.partition_point(|cell| cell.sides < shape.sides);
-    let alike = chosen[first..].iter().take_while(|cell| cell.sides == shape.sides);
+/// Places in a sorted list of the two nearest cells with the same sides, in this distance.
+fn nearest(shape: &Shape, chosen: &[ForkCell], most: f32) -> [Option<u32>; 2] {
+    // Cells are sorted by sides, then by the first coordinate.
+    let [lowest, highest] = shape.first_steps(most);
+    let first = chosen.partition_point(|cell| (cell.sides, cell.steps[0]) < (shape.sides, lowest));
+    let is_near = |cell: &&ForkCell| cell.sides == shape.sides && cell.steps[0] <= highest;
     let mut best = [(f32::INFINITY, None); 2];
-    for (cell, i) in alike.zip(first as u32..) {
-        let Some(distance) = shape.distance(cell, NEAR) else { continue };
+    for (cell, i) in chosen[first..].iter().take_while(is_near).zip(first as u32..) {
+        let Some(distance) = shape.distance(cell, most) else { continue };
         if distance < best[0].0 {
             best = [(distance, Some(i)), best[0]];
         } else if distance < best[1].0 {

@@ -8,20 +8,23 @@ use std::f64::consts::TAU;
 /// Size of a cell.
 #[derive(Clone, Copy)]
 struct Steps {
-    /// In radians.
-    azimuth: f64,
+    /// Number of steps in a turn.
+    turn: f64,
     height: f64,
     /// Of the logarithms of radii and lengths.
     radius: f64,
     length: f64,
 }
 
-const FINE: Steps = Steps { azimuth: TAU / 18.0, height: 0.3, radius: 0.25, length: 0.3 };
-const COARSE: Steps = Steps { azimuth: TAU / 12.0, height: 0.4, radius: 0.4, length: 0.45 };
+const FINE: Steps = Steps { turn: 18.0, height: 0.3, radius: 0.25, length: 0.3 };
+const COARSE: Steps = Steps { turn: 12.0, height: 0.4, radius: 0.4, length: 0.45 };
 /// Length of a vessel in the middle of a cell, in radii: about the distance of most cuts.
 const USUAL_LENGTH: f64 = 2.2;
 /// Largest sine of the angle between the axis of a vessel at its cut and its chord.
 const STRAIGHT: f64 = 1e-3;
+
+/// Coordinates of a shape that are azimuths.
+const AZIMUTHS: std::ops::Range<usize> = 1..3;
 
 /// Side of a terminal.
 pub const TIP: u8 = 2;
@@ -68,14 +71,25 @@ impl Shape {
     pub fn cell(&self) -> Option<ForkCell> {
         let Self { is_coarse, sides, places } = *self;
         let is_in_range = places.iter().all(|place| place.abs() <= 100.0);
-        is_in_range.then(|| ForkCell { is_coarse, sides, steps: places.map(|place| place.round() as i8) })
+        let mut steps = places.map(|place| place.round() as i8);
+        // Half a turn has two names.
+        let half = (steps_of(is_coarse).turn / 2.0) as i8;
+        steps[AZIMUTHS].iter_mut().filter(|step| **step == -half).for_each(|step| *step = half);
+        is_in_range.then_some(ForkCell { is_coarse, sides, steps })
+    }
+
+    /// Smallest and largest first step of the cells whose middle is at most so far away.
+    pub fn first_steps(&self, most: f32) -> [i8; 2] {
+        [(self.places[0] - most).ceil() as i8, (self.places[0] + most).floor() as i8]
     }
 
     /// Square of the distance from the middle of a cell; `None` if a coordinate differs by more than `most`.
     pub fn distance(&self, cell: &ForkCell, most: f32) -> Option<f32> {
         let mut sum = 0.0;
-        for (place, &step) in self.places.iter().zip(&cell.steps) {
+        let turn = steps_of(self.is_coarse).turn as f32;
+        for (i, (place, &step)) in self.places.iter().zip(&cell.steps).enumerate() {
             let along = (place - f32::from(step)).abs();
+            let along = if AZIMUTHS.contains(&i) { along.min(turn - along) } else { along };
             if along > most {
                 return None;
             }
@@ -128,12 +142,12 @@ impl Fork {
     /// Shape, with its coordinates in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
     /// vessel.
     pub fn shape(&self, is_coarse: bool) -> Option<Shape> {
-        let steps = steps(is_coarse);
+        let steps = steps_of(is_coarse);
         let normal = self.normal()?;
         let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
         let azimuth = |limb: usize| {
             let (x, y) = (across[0].dot(&across[limb]), normal.dot(&across[0].cross(&across[limb])));
-            libm::atan2(y, x) / steps.azimuth
+            libm::atan2(y, x) * steps.turn / TAU
         };
         let radius = |[r, of]: [f64; 2]| libm::log(r / of) / steps.radius;
         let mut places = [0.0; FORK_PLACES];
@@ -163,13 +177,13 @@ fn vessel(cluster: &Cluster, end: &ClusterEnd) -> Option<(Point3, [f64; 2])> {
 /// Fork in the middle of a cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the extension
 /// beyond a cut, in radii. `stretch`: factor of all lengths.
 pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
-    let steps = steps(cell.is_coarse);
+    let steps = steps_of(cell.is_coarse);
     let place = |i: usize| f64::from(cell.steps[i]);
     let height = (steps.height * place(0)).clamp(-0.9, 0.9);
     let across = (1.0 - height * height).sqrt();
     let mut cluster = Cluster::default();
     for i in 0..3 {
-        let azimuth = if i == 0 { 0.0 } else { steps.azimuth * place(i) };
+        let azimuth = if i == 0 { 0.0 } else { TAU / steps.turn * place(i) };
         let (y, x) = libm::sincos(azimuth);
         let axis = Vec3::new(across * x, across * y, height);
         let [radius, taper, length] = [0, 1, 2].map(|k| place(3 + 3 * i + k));
@@ -189,6 +203,6 @@ pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
     cluster
 }
 
-fn steps(is_coarse: bool) -> Steps {
+fn steps_of(is_coarse: bool) -> Steps {
     if is_coarse { COARSE } else { FINE }
 }
