@@ -136,6 +136,10 @@ const FLAT_LAYERS: f64 = 1e-3;
 const SLIM: f64 = 12.0;
 const WAYS_OUT_OF_SLIM: usize = 3;
 
+/// Number of equal failures after which a large cluster is not tried in further ways of the same kind: it fails at the same
+/// place on any grid.
+const ALIKE: usize = 2;
+
 /// Limits for the worst tetrahedron of a block.
 #[derive(Clone, Copy, Debug)]
 struct Bar {
@@ -199,17 +203,40 @@ fn worst_ratio(block: &Finished) -> f64 {
     if block.hull.is_empty() { block.certificate.worst_ratio() } else { f64::INFINITY }
 }
 
+/// Failures of attempts of each kind, to find equal ones.
+#[derive(Default)]
+struct Alike(Vec<([bool; 2], String)>);
+
+impl Alike {
+    /// True if attempts of this kind failed [`ALIKE`] times with the same error at the same place.
+    fn is_enough(&self, params: &BlockParams) -> bool {
+        let kind = Self::kind(params);
+        let equal = |error: &str| self.0.iter().filter(|(k, other)| *k == kind && other == error).count();
+        self.0.iter().any(|(k, error)| *k == kind && equal(error) >= ALIKE)
+    }
+
+    fn add(&mut self, params: &BlockParams, error: &BlockError) {
+        self.0.push((Self::kind(params), error.to_string()));
+    }
+
+    fn kind(params: &BlockParams) -> [bool; 2] {
+        [params.close_gaps, params.allow_fused]
+    }
+}
+
 /// Makes a block with the first strategy that succeeds: no error, no flat or slim tetrahedron, no fault in its own check.
 ///
 /// Otherwise the best block is returned. If no attempt gives a block, the failure of the first is returned, because the
-/// dump of the input reproduces it. The attempts end early if `is_over` is true.
+/// dump of the input reproduces it. The attempts end early if `is_over` is true. If the block `is_large`, ways like those that
+/// failed alike are left out.
 fn first_good(
     block: &str,
     attempts: Vec<BlockAttempt>,
-    is_over: impl Fn() -> bool,
+    (is_large, is_over): (bool, impl Fn() -> bool),
     mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
+    let mut alike = Alike::default();
     let mut best: Option<(usize, BlockAttempt, Finished)> = None;
     for (tried, attempt) in attempts.into_iter().enumerate() {
         let bar = Bar::of(&attempt.params);
@@ -220,6 +247,9 @@ fn first_good(
         };
         if best.as_ref().is_some_and(will_do) || tried > 0 && is_over() {
             break;
+        }
+        if is_large && alike.is_enough(&attempt.params) {
+            continue;
         }
         match make(&attempt.params) {
             Ok(made) if bar.is_passed(&made) => {
@@ -232,7 +262,10 @@ fn first_good(
                     best = Some((before, attempt, made));
                 }
             }
-            Err(error) => failures.push(error),
+            Err(error) => {
+                alike.add(&attempt.params, &error);
+                failures.push(error);
+            }
         }
     }
     match best {
@@ -263,7 +296,7 @@ pub fn cluster(
         let make = |params: &BlockParams| {
             budget.attempt(cluster, params, |watch| once::cluster(id, cluster, params, &original, watch))
         };
-        first_good(&name, attempts(plan, overlapping, first), || budget.is_over(), make)
+        first_good(&name, attempts(plan, overlapping, first), (budget.is_large, || budget.is_over()), make)
     };
     let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
@@ -342,18 +375,14 @@ fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Res
         params: BlockParams { first_division, ..plan.block_params() },
     };
     let mut before: Vec<BlockError> = Vec::new();
-    let mut tried = first_good(
-        &format!("connector {}", id.0),
-        (0..DIVISIONS).map(way).collect(),
-        || false,
-        |params| {
+    let mut tried =
+        first_good(&format!("connector {}", id.0), (0..DIVISIONS).map(way).collect(), (false, || false), |params| {
             let (made, divisions) = make(params)?;
             // A division that fails gives way to the next one at once.
             let failed = |attempt| BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: vec![attempt] };
             before.extend(divisions.into_iter().map(failed));
             Ok(made)
-        },
-    );
+        });
     tried.failures.extend(before);
     tried
 }
@@ -380,12 +409,9 @@ mod tests {
                 name: first_division.to_string(),
                 params: BlockParams { first_division, ..usual },
             };
-            first_good(
-                "block",
-                (0..results.len()).map(way).collect(),
-                || false,
-                |params| results[params.first_division].map(block).ok_or_else(failed),
-            )
+            first_good("block", (0..results.len()).map(way).collect(), (false, || false), |params| {
+                results[params.first_division].map(block).ok_or_else(failed)
+            })
         };
         let of = |results: &[Option<f64>]| {
             let Tried { result, failures, .. } = try_all(results);
@@ -425,15 +451,10 @@ mod tests {
         let way =
             |first_division| BlockAttempt { name: String::new(), params: BlockParams { first_division, ..usual } };
         let mut asked = 0;
-        let tried = first_good(
-            "block",
-            (0..slim.len()).map(way).collect(),
-            || false,
-            |params| {
-                asked += 1;
-                Ok(slim[params.first_division].clone())
-            },
-        );
+        let tried = first_good("block", (0..slim.len()).map(way).collect(), (false, || false), |params| {
+            asked += 1;
+            Ok(slim[params.first_division].clone())
+        });
         assert_eq!(asked, 1 + WAYS_OUT_OF_SLIM);
         assert_eq!((tried.result.ok(), tried.failures.len()), (Some(slim[1].clone()), 1));
     }
@@ -447,14 +468,37 @@ mod tests {
             asked.set(asked.get() + 1);
             Err(BlockError::Parameter { name: "none", value: f64::from(asked.get()) })
         };
-        let Tried { result, failures, .. } = first_good("block", attempts(), || asked.get() >= 2, failed);
+        let Tried { result, failures, .. } = first_good("block", attempts(), (false, || asked.get() >= 2), failed);
         // The first failure counts, and the attempt that begins within the budget is not the last word.
         assert_eq!(result.err(), Some(BlockError::Parameter { name: "none", value: 1.0 }));
         assert_eq!((asked.get(), failures.len()), (2, 1));
         // One attempt is made in any case, or there would be no reason to report.
         asked.set(7);
-        assert!(first_good("block", attempts(), || true, failed).result.is_err());
+        assert!(first_good("block", attempts(), (false, || true), failed).result.is_err());
         assert_eq!(asked.get(), 8);
+    }
+
+    #[test]
+    fn a_large_block_is_not_tried_again_where_it_failed_alike() {
+        let usual = MeshPlan::default().block_params();
+        let attempts: Vec<BlockAttempt> = [false, true]
+            .into_iter()
+            .flat_map(|allow_fused| [0, 0, 1, 1, 1, 2].map(|first_division| (allow_fused, first_division)))
+            .map(|(allow_fused, first_division)| BlockParams { allow_fused, first_division, ..usual })
+            .map(|params| BlockAttempt { name: String::new(), params })
+            .collect();
+        let asked = |is_large| {
+            let mut asked = Vec::new();
+            let failed = |params: &BlockParams| {
+                asked.push(params.first_division);
+                Err(BlockError::Parameter { name: "none", value: (params.first_division / 2) as f64 })
+            };
+            assert!(first_good("block", attempts.clone(), (is_large, || false), failed).result.is_err());
+            asked
+        };
+        assert_eq!(asked(false).len(), attempts.len());
+        // Two of each kind.
+        assert_eq!(asked(true), [0, 0, 0, 0]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Budget of a cluster: of each attempt, and of all together. It follows from the input of the cluster and the effort of the
 //! run alone, so that equal inputs have equal results on any machine.
 
-use super::effort::Effort;
+use super::effort::{Effort, LARGE};
 use super::estimate::attempt_cost;
 use super::plan::MeshPlan;
 use crate::block::{BlockError, BlockParams};
@@ -18,6 +18,8 @@ pub(super) struct BlockBudget<'a> {
     id: ClusterId,
     plan: &'a MeshPlan,
     all: Budget,
+    /// True if an attempt takes long.
+    pub is_large: bool,
     watch: &'a Watch<'a>,
 }
 
@@ -25,7 +27,8 @@ impl<'a> BlockBudget<'a> {
     /// Budget of a cluster's attempts.
     pub(super) fn of(id: ClusterId, cluster: &Cluster, plan: &'a MeshPlan, effort: Effort, watch: &'a Watch) -> Self {
         let usual = attempt_cost(cluster, plan, &plan.block_params());
-        Self { id, plan, all: Budget::new(effort.limit(usual.operations)), watch }
+        let is_large = usual.operations > LARGE;
+        Self { id, plan, all: Budget::new(effort.limit(usual.operations)), is_large, watch }
     }
 
     /// True if no further attempt may be made.

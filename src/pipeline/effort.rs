@@ -17,10 +17,10 @@ const ALL_CLUSTERS: f64 = 2e10;
 const CLUSTER: [f64; 2] = [3e7, 1e8];
 
 /// Expected operations of an attempt from which a cluster is large: about half a second.
-const LARGE: f64 = 2e7;
+pub const LARGE: f64 = 2e7;
 
-/// Number of operations per expected one beyond that: further attempts at a large cluster rarely differ.
-const PER_OPERATION_OF_LARGE: f64 = 3.0;
+/// Number of operations per expected one beyond that.
+const PER_OPERATION_OF_LARGE: f64 = 10.0;
 
 /// Maximum operations of all attempts at a cluster: a constant, plus a number per expected operation of the usual one.
 #[derive(Clone, Copy, Debug, PartialEq)]
