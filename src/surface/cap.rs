@@ -81,6 +81,9 @@ pub enum CapFailure {
 const MARGINS: [f64; 3] = [0.4, 0.2, 0.05];
 /// Extent of the relaxed wall before the plane, in edge lengths.
 const RELAXED: f64 = 3.5;
+/// Target edge length, in edges of the disc, below which a vertex near a given disc belongs to a thinner vessel and keeps its
+/// target.
+const THIN: f64 = 0.5;
 /// Maximum tip length, in radii. Longer tips occur only if the vessel runs into another one.
 const LONGEST_TIP: f64 = 3.0;
 /// Maximum number of ends whose tips are searched without a tree.
@@ -541,7 +544,7 @@ fn relaxed(
             leaned_on |= leans;
             if leans || near && before(height) {
                 hold[v] = Hold::Free;
-                if closing.disc.is_some() {
+                if closing.disc.is_some() && sizes[v] > THIN * edge {
                     // The edges of a given disc may be longer or shorter than those of the wall.
                     let stray = GROWTH * height.abs();
                     sizes[v] = sizes[v].clamp(edge - stray.min(edge), edge + stray);

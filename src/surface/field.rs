@@ -14,6 +14,9 @@ use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
 
 /// Contributions below this fraction of the level are neglected.
 const NEGLIGIBLE: f64 = 3e-4;
+/// Ratio of the mean radius of tubes to their harmonic mean up to which they are alike. Two tubes have it if one is nearly four
+/// times as thick.
+const ALIKE: f64 = 1.5;
 /// Maximum number of tubes without a search structure, which would cost more than it saves.
 const FEW: usize = 6;
 /// Maximum deviation of a merged run of tubes from one taper, in radii.
@@ -177,16 +180,23 @@ impl Field {
         (g, gradient * (-self.kappa * self.kappa / (g * sum)))
     }
 
-    /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes.
+    /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes. Where radii differ much, the thin tubes
+    /// count, as in a harmonic mean: edges as long as the mean would cut a thin vessel off where it leaves a wide one.
     pub fn radius(&mut self, p: &Point3) -> f64 {
-        let (mut sum, mut radii) = (0.0, 0.0);
+        let (mut sum, mut radii, mut inverse) = (0.0, 0.0, 0.0);
         let add = |piece: &TaperedSegment| {
             let (weight, radius) = piece.weight_and_radius(p, self.kappa, self.cutoff2);
             sum += weight;
             radii += weight * radius;
+            inverse += weight / radius;
         };
         self.visited += each_near(&mut self.locator, &self.pieces, p, add);
-        if sum > 0.0 { radii / sum } else { 0.0 }
+        if sum <= 0.0 {
+            return 0.0;
+        }
+        let (mean, harmonic) = (radii / sum, sum / inverse);
+        let excess = mean / (ALIKE * harmonic);
+        if excess <= 1.0 { mean } else { harmonic * (ALIKE / (excess * excess)).max(1.0) }
     }
 
     /// Largest radius of a tube.
