@@ -66,6 +66,52 @@ fn a_refinement_that_does_not_help_is_followed_by_the_fallbacks() {
 }
 
 #[test]
+fn vessels_that_cannot_be_parted_are_fused_at_last() {
+    let params = RefineParams::default().iterations(0);
+    let made = Run::of_skeleton(crossing()).refine(params).mesh(&()).unwrap();
+    let kept = made.attempts[made.kept];
+    assert_eq!((kept.strategy, kept.fault), (Strategy::Fused, None));
+    assert!(made.check.is_valid() && made.changes.one_lumen.is_some());
+    // The network asked for two lumens.
+    assert!(made.defects.contains(&Defect::VesselsNotKept), "{:?}", made.defects);
+}
+
+#[test]
+fn a_valid_mesh_of_another_size_is_kept_before_an_invalid_one() {
+    let points = [[0.0; 3], [3.0, 1.0, 4.0], [5.0, 3.0, 2.0], [3.0, 3.0, 1.0], [1.0, 1.0, 0.0]];
+    let radii = [0.25, 0.25, 1.0, 1.0, 0.5];
+    let mut given = network(&points, &[(0, 1, 1.0), (1, 2, 1.0), (0, 3, 1.0), (1, 4, 1.0)]);
+    given.nodes.iter_mut().zip(radii).for_each(|(node, radius)| node.radius = radius);
+    given.edges.iter_mut().for_each(|edge| edge.radii = edge.nodes.map(|node| radii[node.index()]));
+    let made = Run::of_skeleton(given).refine(RefineParams::default()).mesh(&()).unwrap();
+    let kept = made.attempts[made.kept];
+    assert!(matches!(kept.fault, Some(Fault::Volume(_))) && kept.strategy == Strategy::OverlapsMoved, "{kept:?}");
+    assert!(made.attempts.iter().all(|attempt| matches!(attempt.fault, Some(Fault::Invalid | Fault::Volume(_)))));
+    assert!(made.is_valid() && made.changes.moved.is_some(), "{:?}", made.defects);
+}
+
+#[test]
+fn thin_branches_of_a_wide_vessel_are_well_shaped() {
+    for thin in [0.1, 0.03] {
+        let points = [[-20.0, 0.0, 0.0], [0.0; 3], [20.0, 0.0, 0.0], [0.0, 0.0, 4.0]];
+        let given = network(&points, &[(0, 1, 1.0), (1, 2, 1.0), (1, 3, thin)]);
+        let made = Run::of_skeleton(given).mesh(&()).unwrap();
+        assert!(made.defects.is_empty(), "{:?}", made.defects);
+        let quality = made.check.quality.expect("tetrahedra");
+        assert!(quality.min > 0.2 && quality.dihedral_min > 12.0, "{quality:?}");
+    }
+}
+
+#[test]
+fn a_vessel_wider_than_long_ends_where_it_is_given() {
+    for length in [1e-3, 0.2, 0.45] {
+        let given = network(&[[0.0; 3], [0.0, 0.0, length]], &[(0, 1, 1.0)]);
+        let made = Run::of_skeleton(given).mesh(&()).unwrap();
+        assert!(made.defects.is_empty() && made.changes.extended.is_none(), "{:?}", made.defects);
+    }
+}
+
+#[test]
 fn inlets_are_named_as_the_file_names_them() {
     let tree = || network(&[[0.0; 3], [0.0, 0.0, 20.0]], &[(0, 1, 1.0)]);
     let made = Run::of_skeleton(tree()).roots(["1"]).mesh(&()).unwrap();
