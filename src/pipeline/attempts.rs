@@ -136,8 +136,8 @@ const FLAT_LAYERS: f64 = 1e-3;
 const SLIM: f64 = 12.0;
 const WAYS_OUT_OF_SLIM: usize = 3;
 
-/// Number of equal failures after which a large cluster is not tried in further ways of the same kind: it fails at the same
-/// place on any grid.
+/// Number of equal failures after which a large cluster is not tried in further ways of the same kind. It would fail at the same
+/// place on another grid.
 const ALIKE: usize = 2;
 
 /// Limits for the worst tetrahedron of a block.

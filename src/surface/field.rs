@@ -180,8 +180,8 @@ impl Field {
         (g, gradient * (-self.kappa * self.kappa / (g * sum)))
     }
 
-    /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes. Where radii differ much, the thin tubes
-    /// count, as in a harmonic mean: edges as long as the mean would cut a thin vessel off where it leaves a wide one.
+    /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes. Where radii differ much, it is a harmonic
+    /// mean. Edges as long as the mean would cut a thin vessel off where it leaves a wide one.
     pub fn radius(&mut self, p: &Point3) -> f64 {
         let (mut sum, mut radii, mut inverse) = (0.0, 0.0, 0.0);
         let add = |piece: &TaperedSegment| {

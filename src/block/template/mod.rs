@@ -7,12 +7,12 @@
 //! rest. If taper, bend or twist spoil a tetrahedron, the tube is meshed individually.
 
 mod canonical;
+mod filled;
 mod joined;
 #[cfg(test)]
 mod tests;
 mod wafer;
 
-use super::hull::hull;
 use super::params::BlockParams;
 use super::path::AxisPath;
 use super::topology::Topology;
@@ -24,6 +24,8 @@ use canonical::Template;
 use joined::joined;
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+pub use filled::FilledTube;
 
 /// Maximum template length, in radii. Inner discs are flat, and their neighbours slightly worse than others.
 const LONGEST: f64 = 12.0;
@@ -39,35 +41,6 @@ const SHORT: f64 = 4.0;
 const PLAIN: f64 = 1.0;
 /// Minimum radius ratio of an image's tetrahedra.
 const LEAST: f64 = 0.3;
-
-/// Tube filled with tetrahedra.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FilledTube {
-    /// Points and tetrahedra; the points begin with those of the two discs.
-    pub mesh: TetMesh,
-    /// Number of points of each disc.
-    pub disc: u32,
-    /// Triangles of the two discs, facing outwards.
-    pub ends: [Vec<[u32; 3]>; 2],
-    /// Triangles of the wall, facing outwards.
-    pub wall: Vec<[u32; 3]>,
-    /// Number of rings between the rims.
-    pub rings: u32,
-    /// Topology of the tetrahedra, with both discs.
-    pub topology: Arc<Topology>,
-}
-
-impl FilledTube {
-    /// Returns points and tetrahedra, or points and closed surface if `hollow`. The points begin with those of the two
-    /// discs.
-    pub fn kept(self, hollow: bool) -> (TetMesh, Vec<[u32; 3]>) {
-        if !hollow {
-            return (self.mesh, Vec::new());
-        }
-        let (mesh, triangles, _) = hull(&self.mesh.points, &self.ends, &self.wall);
-        (mesh, triangles)
-    }
-}
 
 /// Tube along a path between the discs of its end sections; `caps` marks discs that are caps. Returns `None` if no
 /// template fits. Depends on ρ, stretch, core and layers of the parameters.

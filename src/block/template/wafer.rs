@@ -1,6 +1,6 @@
 //! Vessel shorter than any template: one layer of prisms between two discs.
 
-use super::FilledTube;
+use super::filled::FilledTube;
 use crate::block::topology::Topology;
 use crate::surface::SharedDisc;
 use anastomesh_mesh::TetMesh;
