@@ -50,7 +50,7 @@ pub enum Strategy {
     WiderClearance,
     /// The network of the best attempt before, with finer edges.
     FinerEdges,
-    /// The network of the best attempt before, with vessels that overlap as one lumen.
+    /// The network of the best attempt before, then the refined one, with vessels that overlap as one lumen.
     Fused,
 }
 
@@ -262,20 +262,27 @@ fn fused<'a>(
         Err(MeshingError::Blocks { networks, .. }) => networks,
         _ => return best,
     };
-    let network = &networks.network;
     let may_fuse = !meshing.plan.fuse && meshing.refine.as_ref().is_some_and(|of| of.residual == Residual::Shrink);
-    if !may_fuse || meshing.store.is_hopeless() || network.overlaps(&network.adjacency()).pairs.is_empty() {
+    if !may_fuse {
         return best;
     }
     let plan = MeshPlan { fuse: true, ..meshing.plan.clone() };
-    match meshing.attempt_by(&plan, Strategy::Fused, networks.clone()) {
-        Ok(candidate) if fault(&candidate.stored.check, &candidate.stored.report, &plan).is_none() => {
-            meshing.progress.note("no mesh with overlapping vessels apart is valid: they were meshed as one lumen");
-            Ok(candidate)
+    let refined = networks.refine.is_none().then(|| (meshing.refined)(networks)).transpose()?;
+    for networks in [Some(networks.clone()), refined].into_iter().flatten() {
+        let network = &networks.network;
+        if meshing.store.is_hopeless() || network.overlaps(&network.adjacency()).pairs.is_empty() {
+            continue;
         }
-        Err(failure) if failure.stops() => Err(failure.into_error()),
-        Ok(_) | Err(_) => best,
+        match meshing.attempt_by(&plan, Strategy::Fused, networks) {
+            Ok(candidate) if fault(&candidate.stored.check, &candidate.stored.report, &plan).is_none() => {
+                meshing.progress.note("no mesh with overlapping vessels apart is valid: they were meshed as one lumen");
+                return Ok(candidate);
+            }
+            Err(failure) if failure.stops() => return Err(failure.into_error()),
+            Ok(_) | Err(_) => {}
+        }
     }
+    best
 }
 
 /// Fault of a mesh but for its volume.
