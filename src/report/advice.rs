@@ -14,7 +14,7 @@ pub fn advice(run: &RunReport, invalid: bool, refined: bool, rho: f64) -> Vec<St
     }
     if !run.overlaps.is_empty() || !run.fused.is_empty() {
         lines.push(if refined {
-            "some overlapping vessels could not be moved apart: --residual fuse meshes them as one lumen and counts the loops"
+            "some overlapping vessels could not be moved apart: --residual fuse accepts them as one lumen and counts the loops"
                 .into()
         } else {
             "vessels overlap or come too close: --refine moves them apart".into()
