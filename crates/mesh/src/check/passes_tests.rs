@@ -85,3 +85,21 @@ fn overlapping_regions_are_found() {
     assert!(failed(&whole).contains(&Line::NoSelfIntersection));
     assert!(failed(&passes).contains(&Line::NoSelfIntersection), "{:?}", failed(&passes));
 }
+
+#[test]
+fn faces_of_both_orientations_cancel_in_a_chain() {
+    let even = [[3, 7, 5], [7, 5, 3], [5, 3, 7]];
+    let odd = [[7, 3, 5], [3, 5, 7], [5, 7, 3]];
+    let sum = |faces: &[([u32; 3], bool)]| {
+        let mut chain = Chain::default();
+        faces.iter().for_each(|&(face, is_reversed)| add(&mut chain, face, is_reversed));
+        chain
+    };
+    for a in even {
+        assert!(even.iter().all(|&b| sum(&[(a, false)]) == sum(&[(b, false)])));
+        assert!(
+            odd.iter().all(|&b| sum(&[(a, false), (b, false)]) == [0; 2] && sum(&[(b, true)]) == sum(&[(a, false)]))
+        );
+        assert_ne!(sum(&[(a, false)]), [0; 2]);
+    }
+}

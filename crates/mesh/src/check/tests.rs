@@ -253,6 +253,14 @@ fn faults_of_labels() {
 }
 
 #[test]
+fn a_labelled_triangle_of_missing_points_has_no_place() {
+    let (volume, _) = tube();
+    let count = volume.mesh.points.len() as u32;
+    let place = |last: u32| labels::face_at(&volume.mesh.points, [0, 1, last]).position;
+    assert!(place(count - 1).is_some() && place(count).is_none() && place(u32::MAX).is_none());
+}
+
+#[test]
 fn faults_of_caps() {
     assert!(planted(|v, _| v.patches[2].id = 2).contains(&Line::OwnPatch));
     assert_eq!(planted(|v, _| v.patches[2].name = "inlet".into()), [Line::OwnPatch]);

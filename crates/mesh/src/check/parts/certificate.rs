@@ -66,9 +66,13 @@ pub fn certify_hollow(part: &PartView, hull: &[[u32; 3]]) -> Certificate {
         joints: vec![HeldJoint::default(); part.joints.len()],
         ..Certificate::default()
     };
-    let are_indices_valid = hull.as_flattened().iter().all(|&v| (v as usize) < mesh.points.len());
-    if !has_sound_arrays(mesh) || !are_indices_valid {
-        certificate.take([cells::finite_points(mesh)]);
+    let mut indices = Tally::new(Line::IndicesInRange);
+    for &face in hull.iter().filter(|face| face.iter().any(|&v| v as usize >= mesh.points.len())) {
+        indices.add(|| labels::face_at(&mesh.points, face));
+    }
+    let indices = indices.done();
+    if !has_sound_arrays(mesh) || indices.fails() {
+        certificate.take([cells::finite_points(mesh), indices]);
         certificate.unsound = true;
         return certificate;
     }

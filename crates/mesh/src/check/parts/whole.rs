@@ -164,7 +164,7 @@ impl Whole<'_> {
             }
         }
         let is_filled = self.looked.held.tets > 0;
-        lines.retain(|result| is_filled || result.line.concerns_surfaces());
+        lines.retain(|result| is_filled || result.fails() || result.line.concerns_surfaces());
         let quality = is_filled.then(|| self.looked.held.quality.quality());
         let report = CheckReport::new(counts, lines, quality, intersections);
         Ok(PartsCheck { report, meeting })

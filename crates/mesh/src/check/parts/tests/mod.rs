@@ -1,6 +1,7 @@
 //! Meshes cut into parts: the checks of parts and whole agree, and planted faults are found.
 
 mod faults;
+mod hollow;
 mod images;
 mod pieces;
 mod random;
