@@ -92,7 +92,9 @@ fn faces_of_both_orientations_cancel_in_a_chain() {
     let odd = [[7, 3, 5], [3, 5, 7], [5, 7, 3]];
     let sum = |faces: &[([u32; 3], bool)]| {
         let mut chain = Chain::default();
-        faces.iter().for_each(|&(face, is_reversed)| add(&mut chain, face, is_reversed));
+        for &(face, is_reversed) in faces {
+            add(&mut chain, face, is_reversed);
+        }
         chain
     };
     for a in even {

@@ -7,7 +7,9 @@ fn checked(change: impl FnOnce(&mut TetMesh, &mut Vec<[u32; 3]>)) -> (Certificat
     let filled = cube_lattice(2);
     let mut hull = boundary_faces(&filled);
     let used = crate::Kept::used(&hull, filled.points.len(), 0);
-    hull.iter_mut().for_each(|face| *face = used.cell(face));
+    for face in &mut hull {
+        *face = used.cell(face);
+    }
     let mut mesh = TetMesh { points: used.select(&filled.points), tets: Vec::new() };
     change(&mut mesh, &mut hull);
     let view = PartView { mesh: &mesh, joints: &[], caps: &[] };
