@@ -484,7 +484,7 @@ mod tests {
         let attempts: Vec<BlockAttempt> = [false, true]
             .into_iter()
             .flat_map(|allow_fused| [0, 0, 1, 1, 1, 2].map(|first_division| (allow_fused, first_division)))
-            .map(|(allow_fused, first_division)| BlockParams { allow_fused, first_division, ..usual })
+            .map(|(allow_fused, first_division)| BlockParams { first_division, allow_fused, ..usual })
             .map(|params| BlockAttempt { name: String::new(), params })
             .collect();
         let asked = |is_large| {
