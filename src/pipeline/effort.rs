@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn large_clusters_get_few_attempts() {
+    fn large_clusters_get_less_per_operation() {
         let effort = Effort { constant: 1.0, per_operation: 25.0, per_operation_of_large: 4.0 };
         let limits = [0.0, LARGE, 3.0 * LARGE].map(|expected| effort.limit(expected));
         assert_eq!(limits, [1, 1 + 25 * LARGE as u64, 1 + 33 * LARGE as u64]);

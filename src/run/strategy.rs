@@ -171,7 +171,8 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
     }
     let local = match meshing.with_overlaps_moved(networks)? {
         Some(local) if meshing.attempts[local.attempt].fault.is_none() => return Ok(local),
-        local => local,
+        // A valid one has a lumen of another size.
+        local => local.filter(|made| meshing.fault_of(&made.stored).is_none()),
     };
     let refined = (meshing.refined)(networks)?;
     // Where nothing moves, the first attempt is that of the refined network, too.
@@ -190,10 +191,7 @@ fn as_given_or_refined<'a>(networks: &Networks, meshing: &mut Meshing<'a, '_>) -
     let is_valid = |made: &Candidate| meshing.fault_of(&made.stored).is_none();
     match (as_given, local, planned) {
         (_, _, Err(failure)) if !matches!(failure.error, RunError::BlocksFailed(_)) => Err(failure.into_error()),
-        // Its lumen has another size, but no other mesh is valid.
-        (as_given, Some(local), planned) if is_valid(&local) && !as_given.iter().chain(&planned).any(is_valid) => {
-            Ok(local)
-        }
+        (as_given, Some(local), planned) if !as_given.iter().chain(&planned).any(is_valid) => Ok(local),
         (Some(as_given), _, Err(_)) => Ok(as_given),
         (Some(as_given), _, Ok(planned)) if meshing.is_closer(&as_given, &planned) => {
             let why = "refinement gives a mesh that differs more from the given network: nothing was moved";
