@@ -1,4 +1,4 @@
-//! Bifurcations by template beside contoured ones: how many there are, their shapes and times.
+//! Bifurcations and bends by template beside contoured ones: how many there are, their shapes and times.
 //!
 //! `cargo bench --bench forks -- NETWORK...` for refined networks; the fixture without one.
 
@@ -6,8 +6,8 @@ use anastomesh::check::TetQuality;
 use anastomesh::io::{NetworkOptions, read_network};
 use anastomesh::network::clean;
 use anastomesh::testing::{
-    BlockParams, Cluster, ClusterId, ClusterMesh, EndKind, EndStyle, PartitionParams, mesh_cluster, partition,
-    shared_cells, template_of,
+    BlockParams, Cluster, ClusterId, ClusterMesh, EndKind, EndStyle, PartitionParams, SHARP_BEND, mesh_cluster,
+    partition, shared_cells, template_of,
 };
 use std::path::Path;
 use std::time::Instant;
@@ -34,12 +34,21 @@ fn measure(path: &Path) {
     (0..).zip(&mut clusters).for_each(|(i, cluster)| cluster.cells = cells.of(i));
     // Canonical forks are kept for a while, so forks of one follow each other.
     clusters.sort_by_key(template_of);
-    let is_fork = |cluster: &&Cluster| {
-        cluster.ends.len() == 3 && cluster.ends.iter().all(|end| matches!(end.kind, EndKind::Cut { .. }))
-    };
-    let forks: Vec<&Cluster> = clusters.iter().filter(|cluster| cluster.ends.len() > 2).collect();
-    let plain = forks.iter().copied().filter(is_fork).count();
-    let shared = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(params.rho) };
+    println!("{}", path.display());
+    compare("bifurcations", &clusters.iter().filter(|cluster| cluster.ends.len() > 2).collect::<Vec<_>>(), params.rho);
+    compare("bends", &clusters.iter().filter(|cluster| is_bend(cluster)).collect::<Vec<_>>(), params.rho);
+}
+
+/// True for two straight vessels with a sharp bend between them.
+fn is_bend(cluster: &Cluster) -> bool {
+    let [a, b, _, _] = cluster.tubes.as_slice() else { return false };
+    cluster.ends.len() == 2 && (a.b - a.a).angle(&(b.b - b.a)) > SHARP_BEND
+}
+
+fn compare(kind: &str, forks: &[&Cluster], rho: f64) {
+    let is_cut = |cluster: &&&Cluster| cluster.ends.iter().all(|end| matches!(end.kind, EndKind::Cut { .. }));
+    let between = forks.iter().filter(is_cut).count();
+    let shared = BlockParams { ends: EndStyle::Shared, ..BlockParams::with_rho(rho) };
     // Templates are for usual parameters only.
     let contoured = BlockParams { shift: [1e-9, 0.0, 0.0], ..shared };
     let made = |cluster: &Cluster, params: &BlockParams| {
@@ -52,8 +61,9 @@ fn measure(path: &Path) {
         (0..forks.len()).filter(|&i| first[i].0.as_ref().is_some_and(ClusterMesh::is_image)).collect();
     let seconds: f64 = first.iter().map(|(_, seconds)| seconds).sum();
     drop(first);
-    println!("{}: {} clusters with a bifurcation, {plain} of them between three cuts", path.display(), forks.len());
-    println!("by template {} ({:.1} %), all made in {seconds:.2} s", images.len(), share(images.len(), forks.len()));
+    let (all, by_template) = (forks.len(), images.len());
+    let share = share(by_template, all);
+    println!("{kind}: {all}, {between} of them between cuts; by template {by_template} ({share:.1} %); {seconds:.2} s");
     for (name, params) in [("images", &shared), ("contoured", &contoured)] {
         let made: Vec<_> = images.iter().step_by(EVERY).map(|&i| made(forks[i], params)).collect();
         let quality: Vec<TetQuality> =

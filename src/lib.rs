@@ -100,7 +100,8 @@ pub mod check {
 pub mod testing {
     pub use crate::block::{BlockDump, BlockParams, ClusterMesh, EndStyle, mesh_cluster, shared_cells, template_of};
     pub use crate::partition::{
-        Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, check_partition, partition,
+        Cluster, ClusterEnd, ClusterId, CutId, EndKind, PartitionParams, PartitionSummary, SHARP_BEND, check_partition,
+        partition,
     };
     pub use crate::pipeline::replay;
     #[cfg(feature = "cli")]

@@ -52,7 +52,7 @@ pub(crate) fn mesh_cluster_watched(
         let triangles = fork.discs.iter().map(Vec::len).sum::<usize>() + fork.wall.len();
         let topology = Arc::clone(&fork.topology);
         let (mesh, hull, discs) = fork.kept(params.hollow);
-        Image { mesh, hull, discs: discs.to_vec(), triangles, topology }
+        Image { mesh, hull, discs, triangles, topology }
     } else {
         return contoured(id, cluster, params, watch);
     };

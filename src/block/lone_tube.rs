@@ -3,12 +3,9 @@
 use super::layered::disc_at_end;
 use super::params::{BlockParams, EndStyle};
 use super::template::{self, FilledTube};
-use crate::partition::{Cluster, EndKind};
+use crate::partition::{Cluster, EndKind, SHARP_BEND};
 use crate::surface::SharedDisc;
 use anastomesh_mesh::geometry::{Section, Vec3};
-
-/// Maximum turn between consecutive tubes, in radians. Sharper bends are left to the field, which rounds them.
-const STRAIGHT: f64 = 0.35;
 
 /// Meshes a single-tube cluster by template. Returns `None` for other clusters, for those with shorter edges, or if no
 /// template fits.
@@ -43,7 +40,7 @@ fn path(cluster: &Cluster) -> Option<Vec<Section>> {
     let ways = ways?;
     let mut path = vec![Section { axis: -first.section.axis, ..first.section }];
     for (pair, ways) in tubes.windows(2).zip(ways.windows(2)) {
-        if ways[0].angle(&ways[1]) > STRAIGHT {
+        if ways[0].angle(&ways[1]) > SHARP_BEND {
             return None;
         }
         let axis = (ways[0] + ways[1]).normalize();

@@ -27,7 +27,7 @@ pub use layout::Layout;
 pub use params::{PartitionError, PartitionParams};
 pub use parts::{
     BranchPiece, Cluster, ClusterEnd, ClusterId, Cut, CutId, EndKind, FORK_PLACES, ForkCell, ForkCells, Partition,
-    PartitionWarning, UncutReason,
+    PartitionWarning, SHARP_BEND, UncutReason,
 };
 pub use summary::{PartitionSummary, UncutCounts};
 

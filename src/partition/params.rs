@@ -29,7 +29,7 @@ pub struct PartitionParams {
     pub shortest_overrun: f64,
     /// Cut branches with a terminal wherever possible, so that straight tubes connect bifurcations and caps.
     pub cut_terminals: bool,
-    /// Minimum length of a terminal branch to be cut otherwise. Longer pieces of any branch are cut again.
+    /// Minimum length of a terminal branch to be cut otherwise.
     pub long: f64,
     /// Minimum ratio of its radii for a terminal branch to be cut.
     pub taper: f64,

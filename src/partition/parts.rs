@@ -122,6 +122,10 @@ pub struct Cluster {
     pub cells: Vec<ForkCell>,
 }
 
+/// Minimum angle of a bend between two straight vessels that is rounded as a bifurcation is, in radians. Vessels with smaller
+/// bends are tubes along a curved axis.
+pub const SHARP_BEND: f64 = 0.35;
+
 /// Number of coordinates of a fork's shape.
 pub const FORK_PLACES: usize = 12;
 

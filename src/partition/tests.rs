@@ -280,10 +280,18 @@ fn polylines_of_tiny_edges_are_cut_along_their_course() {
 fn kinks_stay_in_clusters() {
     // Two straight parts of 25 at a right angle.
     let p = default_cut(&polyline([[0.0; 3], [25.0, 0.0, 0.0], [25.0, 25.0, 0.0]]));
-    assert!(!p.cuts.is_empty());
+    assert_eq!((p.cuts.len(), p.clusters.len()), (2, 3), "both parts are cut");
     for arc in &p.cut_arcs {
         assert!(arc[1] <= 24.0 || arc[0] >= 26.0, "{arc:?}");
     }
+    // Discs at the bend have the frame of its plane, and so do those at the other ends of the connectors.
+    let ends =
+        p.clusters.iter().flat_map(|cluster| &cluster.ends).filter(|end| matches!(end.kind, EndKind::Cut { .. }));
+    assert!(
+        ends.clone().count() == 4 && ends.clone().all(|end| end.section.up == Some(-Vec3::z())),
+        "{:?}",
+        p.clusters
+    );
     // A continuous bend of less than 3 radii leaves no place for a connector.
     let p = default_cut(&polyline(wiggly(400, 0.2, 2.0)));
     assert_eq!(only_reason(&p, 0), Some(UncutReason::Bend));

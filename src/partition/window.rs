@@ -34,6 +34,9 @@ pub(super) struct CutFinder<'a> {
 const SHORTEST_PIECE: f64 = 4.0;
 /// Length of a connector between such cuts, relative to the minimum length.
 const REASONABLE: f64 = 4.0;
+/// Minimum length of a piece beside a cut that is cut again, in radii. Else a bifurcation and a long vessel beyond a bend, say, would
+/// be contoured together.
+const LONG_PIECE: f64 = 12.0;
 
 impl<'a> CutFinder<'a> {
     pub fn new(
@@ -108,7 +111,7 @@ impl<'a> CutFinder<'a> {
                 (window[1] + gap(window[1]), hi, [window[1], piece_hi]),
             ] {
                 let middle = 0.5 * (piece[0] + piece[1]);
-                if to > from && piece[1] - piece[0] > self.params.long * course.radius(middle, Way::Onward) {
+                if to > from && piece[1] - piece[0] > LONG_PIECE * course.radius(middle, Way::Onward) {
                     pending.push((from, to, piece[0], piece[1]));
                 }
             }

@@ -6,7 +6,7 @@ use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockError, BlockInput, BlockParams, template_of};
 use crate::partition::{Cluster, ClusterId, Cut, Layout};
-use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells};
+use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells, lengths_outside};
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::{SizeAt, Skeleton};
 
@@ -227,7 +227,8 @@ pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
         return tube_cost(tubes.map(|t| (t.length(), 0.5 * (t.ra + t.rb))), plan);
     }
     let thin = thinnest(cluster);
-    let plain = cost(cluster.tubes.iter().map(|t| (t.length(), 0.5 * (t.ra + t.rb), thin)), plan);
+    let lengths = cluster.tubes.iter().zip(lengths_outside(&cluster.tubes));
+    let plain = cost(lengths.map(|(t, length)| (length, 0.5 * (t.ra + t.rb), thin)), plan);
     let finer: f64 = cluster.fine.iter().map(|place| libm::pow(place.factor, -POWER_OF_FORK) - 1.0).sum();
     // Adjacent places along a vessel are a radius apart.
     let radii = if matches!(plan.size_at, Some(SizeAt::Field(_))) { 1.0 } else { FINE_RADII };
@@ -264,7 +265,7 @@ fn thinnest(cluster: &Cluster) -> f64 {
 
 /// Number of grid cells that the wall of a cluster with this thinnest radius crosses.
 fn cells(cluster: &Cluster, thin: f64, plan: &MeshPlan) -> f64 {
-    estimated_cells(&cluster.tubes, 2.0 * thin / plan.rho)
+    estimated_cells(&cluster.tubes, 2.0 * thin / plan.rho, plan.follow)
 }
 
 /// Cost of an attempt at a cluster with other parameters than the plan's.

@@ -17,6 +17,9 @@ const NEGLIGIBLE: f64 = 3e-4;
 /// Ratio of the mean radius of tubes to their harmonic mean up to which they are alike. Two tubes have it if one is nearly four
 /// times as thick.
 const ALIKE: f64 = 1.5;
+/// Ratio of the mean radius of tubes to the smallest one from which the latter is that of the wall. At the foot of a thin branch on
+/// a wide vessel, the share of its kernel tends to zero.
+const FOOT: f64 = 6.0;
 /// Maximum number of tubes without a search structure, which would cost more than it saves.
 const FEW: usize = 6;
 /// Maximum deviation of a merged run of tubes from one taper, in radii.
@@ -181,11 +184,14 @@ impl Field {
     }
 
     /// Mean radius of the tubes near `p`, weighted by the kernel; 0 far from all tubes. Where radii differ much, it is a harmonic
-    /// mean. Edges as long as the mean would cut a thin vessel off where it leaves a wide one.
+    /// mean, or the radius of the thinnest tube. Edges as long as the mean would cut a thin vessel off where it leaves a wide one.
     pub fn radius(&mut self, p: &Point3) -> f64 {
-        let (mut sum, mut radii, mut inverse) = (0.0, 0.0, 0.0);
+        let (mut sum, mut radii, mut inverse, mut thinnest) = (0.0, 0.0, 0.0, f64::INFINITY);
         let add = |piece: &TaperedSegment| {
             let (weight, radius) = piece.weight_and_radius(p, self.kappa, self.cutoff2);
+            if weight > 0.0 && radius < thinnest {
+                thinnest = radius;
+            }
             sum += weight;
             radii += weight * radius;
             inverse += weight / radius;
@@ -195,6 +201,9 @@ impl Field {
             return 0.0;
         }
         let (mean, harmonic) = (radii / sum, sum / inverse);
+        if mean > FOOT * thinnest {
+            return thinnest;
+        }
         let excess = mean / (ALIKE * harmonic);
         if excess <= 1.0 { mean } else { harmonic * (ALIKE / (excess * excess)).max(1.0) }
     }

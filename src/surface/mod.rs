@@ -7,6 +7,7 @@ mod contour;
 mod disc;
 mod erf;
 mod field;
+mod graded;
 pub(crate) mod halfedge;
 mod params;
 pub(crate) mod relax;
@@ -26,10 +27,11 @@ pub use sizes::Finer;
 use anastomesh_mesh::Kept;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::DisjointSets;
-use anastomesh_mesh::geometry::{Point3, Tube, Vec3};
+use anastomesh_mesh::geometry::{Point3, Tube, Vec3, place_key, point_segment};
 use anastomesh_tet::parts::Watch;
 use halfedge::HalfEdges;
 use relax::Relaxation;
+use rustc_hash::FxHashMap;
 
 /// Returns the wall of the vessels `tubes`, at the radii of the tubes: a closed 2-manifold, oriented outwards.
 ///
@@ -64,11 +66,15 @@ pub fn vessel_wall(
 ) -> Result<SizedWall, SurfaceError> {
     check(params)?;
     let mut field = Field::new(tubes, params.kappa)?;
-    let estimate = estimated_cells(tubes, params.voxel);
+    let estimate = estimated_cells(tubes, params.voxel, params.follow);
     if estimate > params.max_cells as f64 {
         return Err(SurfaceError::TooLarge { cells: estimate, limit: params.max_cells });
     }
-    let mesh = contour_field(tubes, &mut field, params, watch)?;
+    let mesh = if is_graded(tubes, params.follow) {
+        contour_graded(tubes, &mut field, params, watch)?
+    } else {
+        contour_field(tubes, &mut field, params, watch)?
+    };
     let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
     let sizes = sizes::wall_sizes(&surface, &mut field, params, finer);
     watch.spend(surface.points.len() + field.operations())?;
@@ -102,10 +108,60 @@ fn check(params: &SurfaceParams) -> Result<(), SurfaceError> {
     }
 }
 
-/// Estimates the number of cells that the wall crosses: 1.5 per cell face of its area.
-pub(crate) fn estimated_cells(tubes: &[Tube], voxel: f64) -> f64 {
-    let area: f64 = tubes.iter().map(|t| std::f64::consts::PI * (t.ra + t.rb) * t.length()).sum();
-    1.5 * area / (voxel * voxel)
+/// Estimates the number of cells that the wall crosses: 1.5 per cell face of its area. Cells have the side `voxel` at the thinnest
+/// tube.
+pub(crate) fn estimated_cells(tubes: &[Tube], voxel: f64, follow: f64) -> f64 {
+    let thinnest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
+    let is_graded = is_graded(tubes, follow);
+    let cells = |(t, length): (&Tube, f64)| {
+        let wider = if is_graded { libm::pow(0.5 * (t.ra + t.rb) / thinnest, follow) } else { 1.0 };
+        1.5 * std::f64::consts::PI * (t.ra + t.rb) * length / (voxel * wider).powi(2)
+    };
+    tubes.iter().zip(lengths_outside(tubes)).map(cells).sum()
+}
+
+/// Lengths of tubes, less their parts within much wider ones at their ends.
+pub(crate) fn lengths_outside(tubes: &[Tube]) -> Vec<f64> {
+    let ends = |t: &Tube| [(place_key(&t.a), t.ra), (place_key(&t.b), t.rb)];
+    let mut widest = FxHashMap::default();
+    for (place, radius) in tubes.iter().flat_map(ends) {
+        let most: &mut f64 = widest.entry(place).or_insert(radius);
+        *most = most.max(radius);
+    }
+    let within = |(place, radius)| if widest[&place] > MUCH_WIDER * radius { widest[&place] } else { 0.0 };
+    tubes.iter().map(|t| (t.length() - ends(t).into_iter().map(within).sum::<f64>()).max(0.0)).collect()
+}
+
+/// Ratio of radii from which a tube counts from the wall of the other one.
+const MUCH_WIDER: f64 = 8.0;
+
+/// Ratios of edge lengths for which the grid is graded. Coordinates have too few bits for more.
+const GRADED: std::ops::Range<f64> = 8.0..1.0001e8;
+
+/// True if the grid is graded. `follow`: exponent of the growth of edges with the radius.
+fn is_graded(tubes: &[Tube], follow: f64) -> bool {
+    let thinnest = tubes.iter().map(Tube::min_radius).fold(f64::INFINITY, f64::min);
+    let widest = tubes.iter().map(Tube::max_radius).fold(0.0, f64::max);
+    GRADED.contains(&libm::pow(widest / thinnest, follow))
+}
+
+/// Contours the field on a graded grid and returns the outer surface around the tubes.
+fn contour_graded(
+    tubes: &[Tube],
+    field: &mut Field,
+    params: &SurfaceParams,
+    watch: &Watch,
+) -> Result<TriMesh, SurfaceError> {
+    let mesh = graded::contour(tubes, field, params, watch)?;
+    outer_component(mesh, |mesh, of, c| {
+        let p = of.iter().position(|&other| other == c).map_or(Point3::origin(), |v| mesh.points[v]);
+        let away = |t: &Tube| {
+            let (share, distance) = point_segment(&p, &t.a, &t.b);
+            distance - t.radius(share)
+        };
+        let nearest = (0..).zip(tubes).min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
+        nearest.map_or(0, |(tube, _)| tube)
+    })
 }
 
 /// Contours the field on the grid and returns the outer surface around the tubes. There must be exactly one.
@@ -132,11 +188,12 @@ fn contour_field(
     for p in &mut mesh.points {
         *p = grid.origin + p.coords * grid.voxel;
     }
-    outer_component(mesh, &at_seeds, &owners)
+    outer_component(mesh, |_, of, c| at_seeds.iter().position(|&v| of[v as usize] == c).map_or(0, |i| owners[i]))
 }
 
-/// Keeps the only component with outward orientation; drops voids inside the vessels.
-fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<TriMesh, SurfaceError> {
+/// Keeps the only component with outward orientation; drops voids inside the vessels. `owner`: tube of a component, from the mesh
+/// and the component of each vertex.
+fn outer_component(mesh: TriMesh, owner: impl Fn(&TriMesh, &[u32], u32) -> u32) -> Result<TriMesh, SurfaceError> {
     let component = components(&mesh);
     let count = component.iter().max().map_or(0, |&c| c as usize + 1);
     if count == 1 {
@@ -149,7 +206,7 @@ fn outer_component(mesh: TriMesh, at_seeds: &[u32], owners: &[u32]) -> Result<Tr
         volume[component[t[0] as usize] as usize] += a.dot(&b.cross(&c));
     }
     let outer: Vec<u32> = (0..count as u32).filter(|&c| volume[c as usize] > 0.0).collect();
-    let owner = |c: u32| at_seeds.iter().position(|&v| component[v as usize] == c).map_or(0, |i| owners[i]);
+    let owner = |c: u32| owner(&mesh, &component, c);
     match outer[..] {
         [] => Err(SurfaceError::Empty),
         [one] => Ok(restricted(&mesh, &component, one)),

@@ -49,9 +49,9 @@ pub fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
 
 /// A good vessel, and a bifurcation with a hair too thin to store its wall. As VTP, so that others keep their radius.
 pub const HOPELESS: &str = r#"<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="6" NumberOfLines="4">
-<CellData><DataArray type="Float64" Name="EdgeRadius" format="ascii">1 1 1 1e-3</DataArray></CellData>
+<CellData><DataArray type="Float64" Name="EdgeRadius" format="ascii">1 1 1 1e-9</DataArray></CellData>
 <Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
-0 0 0 0 0 9 50 0 0 50 0 6 50 6 0 50 -1 -1</DataArray></Points>
+0 0 0 0 0 9 50 0 0 50 0 6 50 6 0 50 -1.00000001 0</DataArray></Points>
 <Lines><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 2 4 2 5</DataArray>
 <DataArray type="Int64" Name="offsets" format="ascii">2 4 6 8</DataArray></Lines></Piece></PolyData></VTKFile>"#;
 

@@ -20,6 +20,9 @@ pub const CONNECTOR_ROOM: f64 = 1.0;
 
 /// Fraction of equation 11's distance in radii of the vessel itself; the rest is in those of its neighbours.
 const OWN_SHARE: f64 = 0.6;
+/// Radius of a thin vessel relative to its neighbour's, and its part of the distance in the neighbour's radii.
+const THIN: f64 = 0.125;
+const THIN_DISTANCE: f64 = 1.25;
 /// Length over which the direction of a branch is measured, in radii of the node.
 const DIRECTION_WINDOW: f64 = 3.0;
 /// Minimum length that a terminal keeps when its branch is cut, in radii.
@@ -217,7 +220,9 @@ impl<'a> Cuttability<'a> {
             thickest = thickest.max(other.root_radius);
         }
         // The cut must pass the wall of the thickest neighbour; with equal radii that is equation 11.
-        let wall = (self.rules.node_distance - OWN_SHARE) * thickest + OWN_SHARE * own.root_radius;
+        let is_thin = own.root_radius < THIN * thickest;
+        let share = if is_thin { THIN_DISTANCE } else { self.rules.node_distance - OWN_SHARE };
+        let wall = share * thickest + OWN_SHARE * own.root_radius;
         [wall.min(self.rules.node_distance * radius), self.rules.angle_margin * angle]
     }
 }

@@ -2,6 +2,7 @@
 //! lattice, only the layer at the wall needs improvement. Away from the wall its cubes may grow.
 
 mod local;
+mod octree;
 
 pub use local::local_lattice_points;
 

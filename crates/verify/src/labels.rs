@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 pub const WALL: i64 = 1;
 /// Maximum distance of a cap's vertices from their middle plane, in radii.
 const FLATNESS: f64 = 1e-9;
-/// Maximum relative change of a number rounded to 32 bits.
-const ROUNDING: f64 = 6e-8;
+/// Maximum relative change of a number rounded to 32 bits, and error of one computed with 64 bits.
+const ROUNDING: [f64; 2] = [6e-8, 1e-15];
 /// Beginnings of names of patches that consist of flat discs.
 const FLAT: [&str; 3] = ["inlet", "outlet", "missing"];
 
@@ -127,7 +127,7 @@ struct Shape {
     off_centre: f64,
     /// Half the extent along the normal.
     height: f64,
-    /// Part of the extent that rounding of coordinates to 32 bits explains; 0 if they have more bits.
+    /// Part of the extent that rounding of coordinates explains.
     rounding: f64,
     faces_along: bool,
 }
@@ -153,13 +153,14 @@ impl Shape {
         }
         let vertices = || triangles.iter().flatten().map(|&v| points[v as usize]);
         let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
-        let shift = |p: Vector| ROUNDING * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
+        let rounding = ROUNDING[usize::from(!is_rounded)];
+        let shift = |p: Vector| rounding * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
         Self {
             unit,
             area: total,
             off_centre: dot(moment, moment).sqrt() / total,
             height: (range[1] - range[0]) / 2.0,
-            rounding: if is_rounded { vertices().map(shift).fold(0.0, f64::max) } else { 0.0 },
+            rounding: vertices().map(shift).fold(0.0, f64::max),
             faces_along: !areas.is_empty() && areas.iter().all(|&a| dot(a, normal) > 0.0),
         }
     }

@@ -70,7 +70,7 @@ conditions! {
     CapPerTerminal, "cap_per_terminal", "terminals without one cap";
     /// Every cap is a disc. Patches of several caps consist of discs.
     CapDisc, "cap_disc", "caps that are not discs";
-    /// Every cap is flat within 1e-9 of its radius, or within the rounding of 32-bit coordinates.
+    /// Every cap is flat within 1e-9 of its radius, or within the rounding of its coordinates.
     CapFlat, "cap_flat", "caps that are not flat";
     /// The centre of a cap is within 0.1 radii of its node.
     CapCentred, "cap_centred", "caps that are not centred on their node";

@@ -1,8 +1,9 @@
 //! Canonical fork of a cell: contoured and filled as other clusters are, then optimized.
 
-use super::crotch::crotches;
-use super::shape::{Fork, TIP, middle};
+use super::crotch::{Crotches, crotches};
+use super::shape::{Fork, Limb, TIP, middle};
 use crate::block::contoured::{ClusterMesh, contoured};
+use crate::block::hull::Triangles;
 use crate::block::params::{BlockParams, EndStyle};
 use crate::block::topology::Topology;
 use crate::partition::{ClusterId, ForkCell, PartitionParams};
@@ -25,14 +26,15 @@ pub struct Canonical {
     pub tets: Vec<[u16; 4]>,
     /// Number of leading points up to the last one on the boundary.
     pub boundary_points: usize,
+    /// Points joined by an edge to each of the other ones.
+    pub inner: Vec<Vec<u16>>,
     /// Triangles of the disc of each limb, facing outwards.
-    pub discs: [Vec<[u32; 3]>; 3],
+    pub discs: Vec<Triangles>,
     /// Triangles of the wall, facing outwards.
-    pub wall: Vec<[u32; 3]>,
+    pub wall: Triangles,
     /// Vertices of the wall, but for those on discs at cuts.
     pub levels: Vec<Level>,
-    /// Crotch between each two limbs, at the index of the third.
-    pub crotches: [Option<Point3>; 3],
+    pub crotches: Crotches,
     /// Topology of the tetrahedra, with the discs.
     pub topology: Arc<Topology>,
 }
@@ -67,7 +69,7 @@ impl Canonical {
             return None;
         }
         let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;
-        let wall: Vec<[u32; 3]> = topology.wall.iter().map(|&face| face_vertices(&mesh.tets, face)).collect();
+        let wall: Triangles = topology.wall.iter().map(|&face| face_vertices(&mesh.tets, face)).collect();
         let limb_of: FxHashMap<u32, usize> =
             (0..).zip(&topology.discs).flat_map(|(i, disc)| disc.vertices.iter().map(move |&v| (v, i))).collect();
         let mut free: Vec<u32> = wall.as_flattened().to_vec();
@@ -80,9 +82,10 @@ impl Canonical {
         let levels =
             free.into_iter().map(&mut level).filter(|level| level.rim.is_none_or(|i| fork.limbs[i].side == TIP));
         let levels = levels.collect();
-        let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
+        let tets: Vec<[u16; 4]> = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
         Some(Self {
             fork,
+            inner: neighbours(&tets, boundary_points, mesh.points.len()),
             points: mesh.points,
             tets,
             boundary_points,
@@ -96,13 +99,27 @@ impl Canonical {
 }
 
 /// Triangles of the ends of the limbs; `None` if a cap is missing.
-fn discs(fork: &Fork, made: &ClusterMesh) -> Option<[Vec<[u32; 3]>; 3]> {
+fn discs(fork: &Fork, made: &ClusterMesh) -> Option<Vec<Triangles>> {
     let (mut cuts, mut caps) = (made.ends.iter(), made.caps.iter());
-    let mut discs: [Vec<[u32; 3]>; 3] = Default::default();
-    for (disc, limb) in discs.iter_mut().zip(&fork.limbs) {
-        disc.clone_from(if limb.side == TIP { &caps.next()?.triangles } else { &cuts.next()?.triangles });
+    let mut disc =
+        |limb: &Limb| Some(if limb.side == TIP { &caps.next()?.triangles } else { &cuts.next()?.triangles }.clone());
+    fork.limbs.iter().map(&mut disc).collect()
+}
+
+/// Neighbours of the points from `first` on.
+fn neighbours(tets: &[[u16; 4]], first: usize, count: usize) -> Vec<Vec<u16>> {
+    let mut near = vec![Vec::new(); count - first];
+    for t in tets {
+        for (i, &v) in t.iter().enumerate().filter(|(_, v)| usize::from(**v) >= first) {
+            let list: &mut Vec<u16> = &mut near[usize::from(v) - first];
+            list.extend((0..4).filter(|&j| j != i).map(|j| t[j]));
+        }
     }
-    Some(discs)
+    for list in &mut near {
+        list.sort_unstable();
+        list.dedup();
+    }
+    near
 }
 
 /// Number of leading points up to the last one on the boundary.

@@ -3,7 +3,7 @@
 //! At small angles the crotch is far from the node, and a few degrees move it by a good part of a radius. The mean of the
 //! vessels' own movements does not follow it, so the points near it have a displacement of their own.
 
-use super::shape::{Fork, Limb};
+use super::shape::{Fork, LIMBS, Limb};
 use crate::surface::Field;
 use anastomesh_mesh::geometry::{Point3, Vec3};
 
@@ -17,6 +17,9 @@ const REACH: f64 = 1.0;
 /// Distance from a disc, in its radii, over which displacements decrease to zero.
 const NEAR_DISC: f64 = 1.0 / 3.0;
 
+/// Crotch between each two limbs, at the index of the third; that of a bend is the last.
+pub type Crotches = [Option<Point3>; LIMBS];
+
 /// Displacements of the crotches of a fork.
 pub struct Shifts<'a> {
     fork: &'a Fork,
@@ -24,10 +27,11 @@ pub struct Shifts<'a> {
     shifts: Vec<[Vec3; 2]>,
 }
 
-/// Returns the crotch between each two limbs, at the index of the third; `None` where the angle is large.
-pub fn crotches(fork: &Fork, field: &mut Field) -> [Option<Point3>; 3] {
+/// Returns the crotches of a fork; `None` where the angle is large.
+pub fn crotches(fork: &Fork, field: &mut Field) -> Crotches {
     std::array::from_fn(|i| {
-        let [a, b, other] = [1, 2, 0].map(|k| &fork.limbs[(i + k) % 3]);
+        let [a, b] = [1, 2].map(|k| fork.limbs.get((i + k) % LIMBS));
+        let (a, b) = (a?, b?);
         if a.axis.dot(&b.axis) < LEAST_COSINE {
             return None;
         }
@@ -35,7 +39,8 @@ pub fn crotches(fork: &Fork, field: &mut Field) -> [Option<Point3>; 3] {
         let corner = (a.axis * b.radii[0] + b.axis * a.radii[0]) / a.axis.cross(&b.axis).norm();
         let mut distance = corner.norm();
         let direction = corner / distance;
-        let is_beside = direction.dot(&other.axis) >= direction.dot(&a.axis).min(direction.dot(&b.axis));
+        let nearest = direction.dot(&a.axis).min(direction.dot(&b.axis));
+        let is_beside = fork.limbs.get(i).is_some_and(|other| direction.dot(&other.axis) >= nearest);
         if !distance.is_finite() || is_beside {
             return None;
         }
@@ -54,7 +59,7 @@ pub fn crotches(fork: &Fork, field: &mut Field) -> [Option<Point3>; 3] {
 
 impl<'a> Shifts<'a> {
     /// Displacements of the crotches of `fork` to those of its image. `moved`: where a point is without them.
-    pub fn new(fork: &'a Fork, [from, to]: [[Option<Point3>; 3]; 2], moved: impl Fn(&Point3) -> Point3) -> Self {
+    pub fn new(fork: &'a Fork, [from, to]: [Crotches; 2], moved: impl Fn(&Point3) -> Point3) -> Self {
         let pairs = from.into_iter().zip(to).filter_map(|(from, to)| Some((from?, to?)));
         Self { fork, shifts: pairs.map(|(from, to)| [from - fork.node, to - moved(&from)]).collect() }
     }
@@ -94,10 +99,10 @@ mod tests {
             let (axis, across) = (Vec3::new(x, y, 0.0), Vec3::new(-y, x, 0.0));
             Limb { axis, frame: [across, Vec3::z()], length: 5.0, radii: [1.0; 2], side: TIP, end: 0 }
         };
-        Fork { node: Point3::origin(), radius: 1.0, limbs: degrees.map(limb) }
+        Fork { node: Point3::origin(), radius: 1.0, limbs: degrees.map(limb).to_vec() }
     }
 
-    fn crotches_of(fork: &Fork) -> [Option<Point3>; 3] {
+    fn crotches_of(fork: &Fork) -> Crotches {
         let tube = |limb: &Limb| Tube { a: fork.node, b: fork.node + limb.axis * 6.0, ra: 1.0, rb: 1.0 };
         crotches(fork, &mut Field::new(&fork.limbs.iter().map(tube).collect::<Vec<_>>(), KAPPA).expect("a field"))
     }

@@ -2,7 +2,7 @@
 
 use super::canonical::Canonical;
 use super::crotch::{Shifts, crotches};
-use super::shape::{Fork, Limb, TIP};
+use super::shape::{Fork, LIMBS, Limb, TIP};
 use crate::block::hull::{Triangles, hull};
 use crate::block::layered::disc_at_end;
 use crate::block::params::BlockParams;
@@ -34,15 +34,17 @@ const MENDED: f64 = 0.2;
 const MENDED_ANGLE: f64 = 13.0;
 /// Minimum radius ratio of an image that is improved.
 const MENDABLE: f64 = 0.01;
+/// Sweeps over the inner points that follow the boundary.
+const SWEEPS: usize = 5;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
 
-/// Fork filled with tetrahedra.
+/// Fork or bend filled with tetrahedra.
 pub struct FilledFork {
     /// Points and tetrahedra.
     pub mesh: TetMesh,
     /// Triangles of the discs, in the order of the cluster's ends, facing outwards.
-    pub discs: [Triangles; 3],
+    pub discs: Vec<Triangles>,
     /// Triangles of the wall, facing outwards.
     pub wall: Triangles,
     /// Topology of the tetrahedra, with the discs in the same order.
@@ -51,7 +53,7 @@ pub struct FilledFork {
 
 impl FilledFork {
     /// Returns points and tetrahedra, or points and closed surface if `hollow`, with the discs.
-    pub fn kept(self, hollow: bool) -> (TetMesh, Triangles, [Triangles; 3]) {
+    pub fn kept(self, hollow: bool) -> (TetMesh, Triangles, Vec<Triangles>) {
         if hollow { hull(&self.mesh.points, &self.discs, &self.wall) } else { (self.mesh, Vec::new(), self.discs) }
     }
 }
@@ -61,8 +63,9 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
     let moved = |p: &Point3| moved(p, &canonical.fork, fork);
     let shifts = Shifts::new(&canonical.fork, [canonical.crotches, crotches(fork, &mut field)], moved);
-    let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p) + shifts.at(p)).collect();
-    let mut discs: [Triangles; 3] = Default::default();
+    let start: Vec<Point3> = canonical.points.iter().map(|p| moved(p) + shifts.at(p)).collect();
+    let mut points = start.clone();
+    let mut discs = vec![Triangles::new(); fork.limbs.len()];
     for (i, limb) in fork.limbs.iter().enumerate() {
         discs[limb.end as usize].clone_from(&canonical.discs[i]);
         if limb.side == TIP {
@@ -87,9 +90,13 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
     let (mut mesh, wall) = (TetMesh { points, tets }, canonical.wall.clone());
-    if is_above(&mesh, LEAST, LEAST_ANGLE) {
+    let is_good = |mesh: &TetMesh| is_above(mesh, LEAST, LEAST_ANGLE);
+    if is_good(&mesh) || {
+        follow(canonical, &start, &mut mesh.points);
+        is_good(&mesh)
+    } {
         // Limb of each end.
-        let mut order = [0, 1, 2];
+        let mut order: Vec<usize> = (0..discs.len()).collect();
         order.sort_by_key(|&limb| fork.limbs[limb].end);
         return Some(FilledFork { mesh, discs, wall, topology: canonical.topology.ordered(&order) });
     }
@@ -106,14 +113,32 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     Some(FilledFork { mesh, discs, wall, topology: Arc::new(topology) })
 }
 
+/// Moves inner points as the boundary was moved away from `start`: by about the mean of their neighbours.
+fn follow(canonical: &Canonical, start: &[Point3], points: &mut [Point3]) {
+    let first = canonical.boundary_points;
+    let mut by: Vec<Vec3> = points.iter().zip(start).map(|(p, from)| p - from).collect();
+    for _ in 0..SWEEPS {
+        for (i, near) in canonical.inner.iter().enumerate() {
+            let sum: Vec3 = near.iter().map(|&v| by[usize::from(v)]).sum();
+            by[first + i] = sum / near.len() as f64;
+        }
+    }
+    for ((p, from), by) in points.iter_mut().zip(start).zip(&by).skip(first) {
+        *p = from + by;
+    }
+}
+
 /// Moves a point with the limbs of a fork: the mean of its images in their frames.
 fn moved(p: &Point3, from: &Fork, to: &Fork) -> Point3 {
     let w = p - from.node;
-    let shares = from.limbs.each_ref().map(|limb| w.dot(&limb.axis) / limb.length);
-    let scores: [f64; 3] = std::array::from_fn(|i| score(&w, shares[i], &from.limbs[i]));
+    let (mut shares, mut scores) = ([0.0; LIMBS], [f64::NEG_INFINITY; LIMBS]);
+    for (i, limb) in from.limbs.iter().enumerate() {
+        shares[i] = w.dot(&limb.axis) / limb.length;
+        scores[i] = score(&w, shares[i], limb);
+    }
     let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (mut sum, mut total) = (Vec3::zeros(), 0.0);
-    for i in 0..3 {
+    for i in 0..from.limbs.len() {
         let weight = if scores[i] == largest { 1.0 } else { libm::exp(SHARPNESS * (scores[i] - largest)) };
         sum += with_limb(&w, shares[i], [&from.limbs[i], &to.limbs[i]]) * weight;
         total += weight;

@@ -1,4 +1,4 @@
-//! Shape of a fork, and its cell.
+//! Shape of a fork or of a bend, and its cell.
 
 use crate::partition::{Cluster, ClusterEnd, CutId, EndKind, FORK_PLACES, ForkCell};
 use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
@@ -28,6 +28,10 @@ const AZIMUTHS: std::ops::Range<usize> = 1..3;
 
 /// Side of a terminal.
 pub const TIP: u8 = 2;
+/// Side of the third vessel of a bend, which has two.
+const NONE: u8 = 3;
+/// Largest number of vessels.
+pub const LIMBS: usize = 3;
 
 /// Vessel of a fork, from its node to its cut or terminal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,14 +50,14 @@ pub struct Limb {
     pub end: u32,
 }
 
-/// Bifurcation of three straight vessels up to their cuts or terminals.
+/// Bifurcation of three straight vessels, or bend of two, up to their cuts or terminals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fork {
     pub node: Point3,
     /// Largest radius at the node, the unit of lengths of the canonical fork.
     pub radius: f64,
     /// Vessels: terminal ones first, then those that end at the node, each by radius.
-    pub limbs: [Limb; 3],
+    pub limbs: Vec<Limb>,
 }
 
 /// Shape of a fork.
@@ -61,7 +65,7 @@ pub struct Fork {
 pub struct Shape {
     is_coarse: bool,
     /// Sides of the ends of the vessels.
-    pub sides: [u8; 3],
+    pub sides: [u8; LIMBS],
     /// Coordinates in steps of a cell.
     places: [f32; FORK_PLACES],
 }
@@ -100,15 +104,15 @@ impl Shape {
 }
 
 impl Fork {
-    /// Shape of a cluster; `None` if it is no fork of straight vessels whose frames are normal to its plane.
+    /// Shape of a cluster; `None` if it is no fork or bend of straight vessels whose frames are normal to its plane.
     pub fn of(cluster: &Cluster) -> Option<Self> {
-        let [_, _, _] = cluster.ends.as_slice() else { return None };
-        if cluster.tubes.len() != 6 {
+        let ends = cluster.ends.len();
+        if !(2..=LIMBS).contains(&ends) || cluster.tubes.len() != 2 * ends {
             return None;
         }
         let up = cluster.ends.iter().find_map(|end| end.section.up);
         let mut node = None;
-        let mut limbs = Vec::with_capacity(3);
+        let mut limbs = Vec::with_capacity(ends);
         for (end, index) in cluster.ends.iter().zip(0..) {
             let side = match end.kind {
                 EndKind::Cut { side, .. } if end.section.up == up => side,
@@ -129,12 +133,16 @@ impl Fork {
         }
         limbs.sort_by(|a, b| b.side.cmp(&a.side).then(b.radii[1].total_cmp(&a.radii[1])));
         let radius = limbs.iter().map(|limb| limb.radii[0]).fold(0.0, f64::max);
-        Some(Self { node: node?, radius, limbs: limbs.try_into().ok()? })
+        let fork = Self { node: node?, radius, limbs };
+        // The frames of a straight vessel may be those of a bifurcation at its other end.
+        let is_along = |limb: &Limb| up.is_some_and(|up| limb.axis.dot(&up).abs() <= STRAIGHT * up.norm());
+        (ends > 2 || fork.limbs.iter().all(is_along)).then_some(fork)
     }
 
     /// Normal of the plane of the fork, on the side of the frames.
     fn normal(&self) -> Option<Vec3> {
-        let [a, b, c] = self.limbs.map(|limb| limb.axis);
+        let c = self.limbs.get(2).map_or(Vec3::zeros(), |limb| limb.axis);
+        let [a, b] = [0, 1].map(|i| self.limbs[i].axis);
         let normal = (a - c).cross(&(b - c)).try_normalize(0.0)?;
         Some(if normal.dot(&self.limbs[0].frame[0]) < 0.0 { -normal } else { normal })
     }
@@ -144,20 +152,24 @@ impl Fork {
     pub fn shape(&self, is_coarse: bool) -> Option<Shape> {
         let steps = steps_of(is_coarse);
         let normal = self.normal()?;
-        let across = self.limbs.map(|limb| limb.axis - normal * normal.dot(&limb.axis));
-        let azimuth = |limb: usize| {
-            let (x, y) = (across[0].dot(&across[limb]), normal.dot(&across[0].cross(&across[limb])));
-            libm::atan2(y, x) * steps.turn / TAU
+        let across = |limb: &Limb| limb.axis - normal * normal.dot(&limb.axis);
+        let first = across(&self.limbs[0]);
+        let azimuth = |limb: &Limb| {
+            let other = across(limb);
+            libm::atan2(normal.dot(&first.cross(&other)), first.dot(&other)) * steps.turn / TAU
         };
         let radius = |[r, of]: [f64; 2]| libm::log(r / of) / steps.radius;
         let mut places = [0.0; FORK_PLACES];
-        places[..3].copy_from_slice(&[normal.dot(&self.limbs[0].axis) / steps.height, azimuth(1), azimuth(2)]);
+        places[0] = normal.dot(&self.limbs[0].axis) / steps.height;
+        for (limb, place) in self.limbs[1..].iter().zip(&mut places[AZIMUTHS]) {
+            *place = azimuth(limb);
+        }
         for (limb, places) in self.limbs.iter().zip(places[3..].chunks_mut(3)) {
             let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / steps.length;
             let [near, far] = limb.radii;
             places.copy_from_slice(&[radius([near, self.radius]), radius([far, near]), length]);
         }
-        let sides = self.limbs.each_ref().map(|limb| limb.side);
+        let sides = std::array::from_fn(|i| self.limbs.get(i).map_or(NONE, |limb| limb.side));
         Some(Shape { is_coarse, sides, places: places.map(|place| place as f32) })
     }
 }
@@ -182,7 +194,7 @@ pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
     let height = (steps.height * place(0)).clamp(-0.9, 0.9);
     let across = (1.0 - height * height).sqrt();
     let mut cluster = Cluster::default();
-    for i in 0..3 {
+    for (i, side) in cell.sides.into_iter().enumerate().filter(|(_, side)| *side != NONE) {
         let azimuth = if i == 0 { 0.0 } else { TAU / steps.turn * place(i) };
         let (y, x) = libm::sincos(azimuth);
         let axis = Vec3::new(across * x, across * y, height);
@@ -194,7 +206,7 @@ pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
         cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
         cluster.tubes.push(Tube { a: at, b: at + axis * (overrun * to), ra: to, rb: to });
         let section = Section { up: Some(Vec3::z()), ..Section::new(at, axis, to) };
-        let kind = match cell.sides[i] {
+        let kind = match side {
             TIP => EndKind::Terminal(NodeId(i as u32)),
             side => EndKind::Cut { cut: CutId(i as u32), side },
         };

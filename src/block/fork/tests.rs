@@ -13,8 +13,11 @@ use anastomesh_skeleton::NodeId;
 use anastomesh_tet::parts::Watch;
 use nalgebra::Rotation3;
 
-/// Fork at a node: for each vessel its azimuth in degrees, length and radii at both ends. The first one ends at the node.
-fn cluster(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [(f64, f64, [f64; 2]); 3]) -> Cluster {
+/// Azimuth in degrees, length and radii at both ends.
+type Vessel = (f64, f64, [f64; 2]);
+
+/// Fork or bend of some vessels at a node. The first one ends there.
+fn cluster<const N: usize>(node: Point3, turn: Rotation3<f64>, rise: f64, vessels: [Vessel; N]) -> Cluster {
     let mut cluster = Cluster::default();
     let normal = turn * Vec3::z();
     for (i, (azimuth, length, radii)) in (0..).zip(vessels) {
@@ -38,7 +41,7 @@ fn in_own_cell(cluster: Cluster) -> Cluster {
     Cluster { cells: own_cell(&cluster).into_iter().collect(), ..cluster }
 }
 
-fn plain() -> [(f64, f64, [f64; 2]); 3] {
+fn plain() -> [Vessel; 3] {
     [(4.0, 2.2, [1.0, 1.05]), (128.0, 2.3, [1.0, 0.95]), (251.0, 2.1, [1.0, 0.9])]
 }
 
@@ -109,6 +112,28 @@ fn a_vessel_may_end_at_a_terminal() {
     }
     buried.ends[0].section.radius = 9.0;
     assert!(fork(&buried, &shared()).is_none());
+}
+
+#[test]
+fn bends_are_images_too() {
+    let bend = |azimuth: f64| {
+        cluster(Point3::new(2.0, 1.0, -5.0), turned(azimuth), 0.0, [plain()[0], (azimuth, 3.0, [1.0, 0.9])])
+    };
+    for azimuth in [70.0, 85.0, 100.0, 115.0, 130.0, 145.0, 155.0] {
+        let input = bend(azimuth);
+        let made = fork(&input, &shared()).unwrap_or_else(|| panic!("no image at {azimuth}"));
+        let topology = Topology::of(&made.mesh, made.discs.iter().map(Vec::as_slice));
+        assert_eq!(*made.topology, topology.expect("its discs are on its boundary"), "{azimuth}");
+        let block = mesh_cluster(ClusterId(0), &input, &shared()).expect("a cluster");
+        let block = Finished::of_cluster(block, |node| node.0).expect("its ends are on its boundary");
+        assert!(block.certificate.is_sound() && block.joints.len() == 2, "{azimuth}");
+        assert!(TetQuality::of(&block.mesh).min > 0.2, "{azimuth}");
+    }
+    // The frames at a bend are normal to its plane.
+    let mut tilted = bend(90.0);
+    let up = Some(tilted.ends[0].section.axis + tilted.ends[1].section.axis);
+    tilted.ends.iter_mut().for_each(|end| end.section.up = up);
+    assert!(Fork::of(&tilted).is_none());
 }
 
 #[test]

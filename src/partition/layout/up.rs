@@ -1,8 +1,8 @@
-//! Frames of discs beside a bifurcation: their first vector is normal to the plane of the bifurcation. Bifurcations of the
-//! same shape thus have the same discs.
+//! Frames of discs beside a bifurcation or a bend: their first vector is normal to its plane. Bifurcations of the same shape
+//! thus have the same discs.
 
 use super::{LEG, Layout, NONE, Placed};
-use crate::partition::parts::{ClusterId, CutId};
+use crate::partition::parts::{ClusterId, CutId, SHARP_BEND};
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::NodeId;
 use anastomesh_skeleton::course::{Course, Way};
@@ -21,11 +21,15 @@ struct Branch {
 
 impl Layout {
     /// First frame vectors of the discs on both sides of a cut, up to their components along the vessel. A vessel that leads to
-    /// no bifurcation on one side has one frame. `None`: the frame depends on the axis alone.
+    /// no bifurcation or bend on one side has one frame. `None`: the frame depends on the axis alone.
     pub(super) fn ups(&self, cut: CutId) -> [Option<Vec3>; 2] {
         let cut = &self.cuts[cut.0 as usize];
-        let nodes = self.course(cut.branch).branch.ends();
-        let [first, second] = [0, 1].map(|side| self.normal_at(nodes[side], cut.sides[side].0));
+        let course = self.course(cut.branch);
+        let nodes = course.branch.ends();
+        let [first, second] = [0, 1].map(|side| {
+            let cluster = cut.sides[side].0;
+            self.normal_at(nodes[side], cluster).or_else(|| self.normal_of_bend(&course, cluster))
+        });
         [first.or(second), second.or(first)]
     }
 
@@ -40,6 +44,27 @@ impl Layout {
         branches.sort_by(|a, b| b.rank.cmp(&a.rank).then(b.radius.total_cmp(&a.radius)));
         let [a, b, c] = <[Branch; 3]>::try_from(branches).ok()?.map(|branch| branch.direction);
         (a - c).cross(&(b - c)).try_normalize(0.0)
+    }
+
+    /// Normal of the plane of a bend: a cluster of one piece of the course, which turns sharply at one node.
+    fn normal_of_bend(&self, course: &Course, cluster: ClusterId) -> Option<Vec3> {
+        let [piece] = self.pieces_of(cluster.0 as usize) else { return None };
+        let [lo, hi] = self.arc_of(piece, course);
+        let arc = &course.branch.arc;
+        let (from, to) = (arc.partition_point(|&s| s <= lo), arc.partition_point(|&s| s < hi));
+        if to != from + 1 {
+            return None;
+        }
+        let node = course.points[from];
+        let mut ways = [lo, hi].map(|s| course.point(s) - node);
+        if ways[0].angle(&-ways[1]) <= SHARP_BEND {
+            return None;
+        }
+        // Vessels are in the order of those at a bifurcation.
+        if piece.terminals[1] {
+            ways.reverse();
+        }
+        ways[0].cross(&ways[1]).try_normalize(0.0)
     }
 
     /// Ends of a piece at a node.

@@ -15,6 +15,8 @@ use std::f64::consts::PI;
 const FLATNESS: f64 = 1e-9;
 /// Maximum relative change of a coordinate rounded to 32 bits: half a unit in the last place.
 const ROUNDED: f64 = 0.501 * f32::EPSILON as f64;
+/// Relative error of a coordinate that was computed with 64 bits. It counts for caps of less than a millionth of their coordinates.
+const COMPUTED: f64 = 4.0 * f64::EPSILON;
 /// Maximum distance of a cap's centre from its node, in radii.
 const OFF_CENTRE: f64 = 0.1;
 /// Maximum relative difference of a cap's area from that of the disc.
@@ -223,23 +225,17 @@ struct CapShape {
     off_centre: f64,
     /// Maximum distance of a vertex from the middle plane of the vertices, along the cap's normal.
     off_plane: f64,
-    /// Maximum shift of a vertex along the normal by rounding, if all coordinates are 32-bit numbers. Such a file bends
-    /// every cap that is not perpendicular to an axis. Zero for 64-bit coordinates.
+    /// Maximum shift of a vertex along the normal by rounding. Coordinates of 32 bits bend every cap that is not perpendicular to
+    /// an axis.
     rounding: f64,
     faces_outwards: bool,
-}
-
-/// Maximum shift of a vertex along a normal by rounding to 32 bits; `None` for coordinates with more bits.
-fn moved_by_rounding(p: &Point3, normal: &Vec3) -> Option<f64> {
-    let fits = p.coords.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
-    fits.then(|| ROUNDED * p.coords.abs().dot(&normal.abs()))
 }
 
 impl CapShape {
     fn measure(points: &[Point3], cap: &Cap, triangles: &[[u32; 3]]) -> Self {
         let (mut area, mut moment) = (0.0, Vec3::zeros());
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut rounding = Some(0.0_f64);
+        let (mut is_rounded, mut shift) = (true, 0.0_f64);
         let mut faces_outwards = !triangles.is_empty();
         for t in triangles {
             let corners = t.map(|v| &points[v as usize]);
@@ -252,7 +248,8 @@ impl CapShape {
                 moment += from_node * (a / 3.0);
                 let height = from_node.dot(&cap.normal);
                 (low, high) = (low.min(height), high.max(height));
-                rounding = rounding.zip(moved_by_rounding(p, &cap.normal)).map(|(most, here)| most.max(here));
+                is_rounded &= p.coords.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits());
+                shift = shift.max(p.coords.abs().dot(&cap.normal.abs()));
             }
         }
         // A cap without triangles or area fails every condition.
@@ -260,7 +257,7 @@ impl CapShape {
             area,
             off_centre: (moment / area).norm(),
             off_plane: 0.5 * (high - low).abs(),
-            rounding: rounding.unwrap_or(0.0),
+            rounding: shift * if is_rounded { ROUNDED } else { COMPUTED },
             faces_outwards,
         }
     }

@@ -59,7 +59,7 @@ pub enum Line {
     CapPerTerminal,
     /// Every cap is one disc: connected, with one boundary loop, Euler number 1.
     CapDisc,
-    /// Every cap is flat to 1e-9 of its radius, or to rounding if all its coordinates are 32-bit numbers.
+    /// Every cap is flat to 1e-9 of its radius, or to the rounding of its coordinates (of 32 or 64 bits).
     CapFlat,
     /// The centre of every cap is within 0.1 radii of its node.
     CapCentred,

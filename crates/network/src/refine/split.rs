@@ -1,7 +1,7 @@
 //! Splitting of nodes (section 3.1 of the paper): a node of valence above 3 becomes a chain of nodes of valence 3.
 
 use anastomesh_mesh::geometry::Point3;
-use anastomesh_skeleton::{Edge, EdgeId, Node, NodeId, Skeleton};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -10,6 +10,10 @@ const HALVINGS: u32 = 8;
 /// Sum of the shifts at a node, in its radii, if vessels are not to be moved apart. A smaller one gives tubes of bifurcations that
 /// are shorter than the contour resolves; a larger one widens the lumen at nodes of many vessels.
 const IN_PLACE: f64 = 0.1;
+
+/// Radius of a thin vessel relative to that of its node. Such vessels share one node on a wide vessel: shifts that are small for the
+/// wide vessel would be many radii of theirs.
+const THIN: f64 = 0.125;
 
 /// Node that was split, with the nodes and edges made of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,8 +46,8 @@ pub fn split(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
     split_by(skeleton, false)
 }
 
-/// Splits every node of more than three edges like [`split`], with shifts whose sum is at most a tenth of a radius. Vessels keep their
-/// places, and those that leave one node remain close to each other.
+/// Splits nodes of more than three edges like [`split`], with shifts whose sum is at most a tenth of a radius. Vessels keep their
+/// places, and those that leave one node remain close to each other. Nodes of two vessels and any number of thin ones are left.
 pub fn split_in_place(skeleton: &Skeleton) -> (Skeleton, SplitReport) {
     split_by(skeleton, true)
 }
@@ -53,7 +57,7 @@ fn split_by(skeleton: &Skeleton, in_place: bool) -> (Skeleton, SplitReport) {
     let adjacency = skeleton.adjacency();
     let mut out = skeleton.clone();
     let mut report = SplitReport::default();
-    for node in skeleton.node_ids().filter(|&n| adjacency.valence(n) > 3) {
+    for node in crowded(skeleton, &adjacency, in_place) {
         let reach = if in_place { IN_PLACE / (adjacency.valence(node) - 3) as f64 } else { 1.0 };
         report.nodes.push(split_node(&mut out, node, adjacency.edges(node).to_vec(), reach));
     }
@@ -62,13 +66,21 @@ fn split_by(skeleton: &Skeleton, in_place: bool) -> (Skeleton, SplitReport) {
 
 /// Splits a shared network in place. Returns the given network if no node has to be split.
 pub fn split_shared(skeleton: &Arc<Skeleton>) -> (Arc<Skeleton>, SplitReport) {
-    let adjacency = skeleton.adjacency();
-    if skeleton.node_ids().all(|node| adjacency.valence(node) <= 3) {
+    if crowded(skeleton, &skeleton.adjacency(), true).is_empty() {
         return (Arc::clone(skeleton), SplitReport::default());
     }
-    drop(adjacency);
     let (skeleton, report) = split_in_place(skeleton);
     (Arc::new(skeleton), report)
+}
+
+/// Nodes of more than three edges, in place only those of more than two edges that are not thin.
+fn crowded(skeleton: &Skeleton, adjacency: &Adjacency, in_place: bool) -> Vec<NodeId> {
+    let is_wide = |node: NodeId, edge: EdgeId| radius_at(skeleton, edge, node) > THIN * skeleton.node(node).radius;
+    let is_crowded = |&node: &NodeId| {
+        let edges = adjacency.edges(node);
+        edges.len() > 3 && (!in_place || edges.iter().filter(|&&edge| is_wide(node, edge)).count() > 2)
+    };
+    skeleton.node_ids().filter(is_crowded).collect()
 }
 
 fn split_node(skeleton: &mut Skeleton, node: NodeId, mut edges: Vec<EdgeId>, reach: f64) -> SplitNode {
@@ -195,6 +207,16 @@ mod tests {
             assert_eq!(split.made.len(), a.valence(split.node) - 3);
             assert!(split.made.iter().all(|&m| after.node(m).original == before.node(split.node).original));
         }
+    }
+
+    #[test]
+    fn thin_vessels_share_a_node_on_a_wide_one() {
+        let ends = [[-5.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]];
+        let thin = star(&ends, &[1.0, 1.0, 0.01, 0.1]);
+        assert_eq!(split_in_place(&thin), (thin.clone(), SplitReport::default()));
+        check(&thin, &split(&thin).0, &split(&thin).1);
+        let (apart, report) = split_in_place(&star(&ends, &[1.0, 1.0, 0.01, 0.2]));
+        assert_eq!((apart.nodes.len(), report.nodes.len()), (6, 1));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Lattices with cubes as large as the nearby triangles of the surface. Each band of edge lengths has its own lattice,
 //! kept where the nearest vertex of the surface has edges of that band.
 
+use super::octree::octree_points;
 use super::{edges_at_vertices, graded_lattice_points, sites};
 use crate::progress::Watch;
 use anastomesh_mesh::TriMesh;
@@ -17,6 +18,9 @@ const APART: f64 = 0.62;
 
 const MAX_BANDS: usize = 12;
 
+/// Ratio of edge lengths from which cubes are those of an octree. Each lattice fills the bounding box of the surface.
+const WIDE_SPREAD: f64 = 24.0;
+
 /// Points between two checks for cancellation and the budget.
 const ASKED_EVERY: usize = 4096;
 
@@ -28,6 +32,9 @@ const ASKED_EVERY: usize = 4096;
 /// [`Stop`] if the watch stops it.
 pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch: &Watch) -> Result<Vec<Point3>, Stop> {
     let sizes = edges_at_vertices(surface);
+    if spread(&sizes) > WIDE_SPREAD {
+        return octree_points(surface, &sizes, cell, clearance, watch);
+    }
     let Some(bands) = Bands::of(&sizes) else {
         let h = surface.mean_edge();
         return graded_lattice_points(surface, cell * h, clearance * h, watch);
@@ -57,6 +64,12 @@ pub fn local_lattice_points(surface: &TriMesh, cell: f64, clearance: f64, watch:
         }
     }
     Ok(points)
+}
+
+/// Ratio of the largest size to the smallest one.
+fn spread(sizes: &[f64]) -> f64 {
+    let used = sizes.iter().copied().filter(|&s| s > 0.0);
+    used.clone().fold(0.0, f64::max) / used.fold(f64::INFINITY, f64::min)
 }
 
 /// Bands of edge lengths with equal ratio.
@@ -181,6 +194,26 @@ mod tests {
         let quality =
             TetQuality::of(&Tetrahedralizer::new().effort(Effort::Fast).interior(interior).run(&s).unwrap().mesh);
         assert!(quality.mean > 0.8 && quality.percentile_1 > 0.4, "{quality:?}");
+    }
+
+    #[test]
+    fn cubes_of_very_different_sizes_are_those_of_an_octree() {
+        let (cell, clearance) = (1.35, 0.37);
+        let s = horn(100, 1.05);
+        assert!(spread(&edges_at_vertices(&s)) > WIDE_SPREAD);
+        let points = local_lattice_points(&s, cell, clearance, &Watch::NOBODY).unwrap();
+        let radius = |z: f64| 1.0 + z * 0.05 / 0.45;
+        let in_slice = |r: f64| points.iter().filter(|p| (0.8..1.25).contains(&(radius(p.z) / r))).count() as f64;
+        let counts = [2.0, 8.0, 32.0, 90.0].map(in_slice);
+        assert!(counts.iter().all(|&count| count > 10.0 && count < 3.0 * counts[0]), "{counts:?}");
+        for (i, p) in points.iter().enumerate() {
+            let edge = 0.5 * radius(p.z);
+            assert!(points[..i].iter().all(|q| (p - q).norm() > 0.25 * cell * edge), "{p}");
+        }
+        let interior = Interior::Local { cell, clearance };
+        let quality =
+            TetQuality::of(&Tetrahedralizer::new().effort(Effort::Fast).interior(interior).run(&s).unwrap().mesh);
+        assert!(quality.mean > 0.78 && quality.percentile_1 > 0.4, "{quality:?}");
     }
 
     #[test]
