@@ -328,7 +328,7 @@ fn vessels_that_overlap_become_one_lumen_on_request() {
 
 /// A vessel so thin beside the other that coordinates have too few bits for both.
 fn hair_on_a_trunk() -> Skeleton {
-    let nodes = [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.00000001e3, 5e3, 1e-6]];
+    let nodes = [[0.0, 0.0, 0.0, 1e3], [0.0, 0.0, 5e3, 1e3], [0.0, 3e3, 9e3, 8e2], [0.0, -1.000_000_01e3, 5e3, 1e-6]];
     skeleton(&nodes, &[[0, 1], [1, 2], [1, 3]])
 }
 

@@ -17,7 +17,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 const SIDE: f64 = 1.3;
 /// Distance of the wall from a vessel, in its radii, up to which blending with others may move it.
 const BLENDING: f64 = 0.4;
-/// Depth inside a vessel, in its radii, from which there is no wall. The wall is .68 radii beyond a free end.
+/// Depth inside a vessel, in its radii, from which there is no wall. With the usual kernel it is .68 radii beyond a free end, with
+/// narrower ones further.
 const DEEP: f64 = 0.45;
 /// Minimum radius of vessels that are wide beside a cube, in its sides. Within their wall there is no other.
 const WIDE: f64 = 4.0;
@@ -48,8 +49,8 @@ pub(super) fn contour(
 ) -> Result<TriMesh, SurfaceError> {
     let mut octree = Octree::new(tubes, field, params)?;
     octree.divide(tubes, params, watch)?;
-    octree.balance();
-    octree.find_graded();
+    octree.balance(watch)?;
+    octree.find_graded(watch)?;
     let mut marching = Marching {
         octree: &octree,
         field,
@@ -80,6 +81,35 @@ struct Octree {
     graded: Vec<FxHashSet<Index>>,
 }
 
+/// Square face of a cube, in half cells.
+struct Face {
+    /// Lowest corner.
+    at: Index,
+    size: u32,
+    /// Axis that it is normal to, and the end of the cube there: 0 or 1.
+    axis: usize,
+    end: u32,
+    level: usize,
+}
+
+impl Face {
+    /// Axes that it lies along.
+    fn across(&self) -> [usize; 2] {
+        [(self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    /// Its quarters, which are faces of cubes of the next level.
+    fn quarters(&self) -> [Self; 4] {
+        let ([u, v], half) = (self.across(), self.size / 2);
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self {
+            at: moved(moved(self.at, u, i * half), v, j * half),
+            size: half,
+            level: self.level + 1,
+            ..*self
+        })
+    }
+}
+
 /// A cube to be divided, and the vessels near it.
 struct Pending {
     level: usize,
@@ -97,7 +127,7 @@ impl Octree {
         let smallest = target(tubes.iter().flat_map(radii).fold(f64::INFINITY, f64::min));
         let side = (high - low).amax() + 4.0 * largest;
         let levels = libm::ceil(libm::log2(side / smallest));
-        if !(levels <= DEEPEST as f64) {
+        if levels.is_nan() || levels > DEEPEST as f64 {
             return Err(SurfaceError::TooLarge { cells: side / smallest, limit: 1 << DEEPEST });
         }
         let origin = nalgebra::center(&low, &high) + Vec3::from(params.shift) * largest - Vec3::repeat(side / 2.0);
@@ -153,24 +183,42 @@ impl Octree {
     }
 
     /// Divides leaves until those that touch differ by one level at most.
-    fn balance(&mut self) {
+    fn balance(&mut self, watch: &Watch) -> Result<(), SurfaceError> {
         for level in (1..self.finest()).rev() {
-            let parents: FxHashSet<Index> = self.leaves[level + 1].iter().map(|at| at.map(|x| x >> 1)).collect();
-            for parent in parents {
-                for beside in around(parent, level) {
-                    self.refine(beside, level);
-                }
-            }
+            self.around_divided(level, watch, |octree, beside| octree.refine(beside, level))?;
         }
+        Ok(())
     }
 
     /// Finds the leaves that touch smaller ones, when levels are balanced.
-    fn find_graded(&mut self) {
+    fn find_graded(&mut self, watch: &Watch) -> Result<(), SurfaceError> {
         for level in 0..self.finest() {
-            let parents: FxHashSet<Index> = self.leaves[level + 1].iter().map(|at| at.map(|x| x >> 1)).collect();
-            let touched = parents.into_iter().flat_map(|parent| around(parent, level));
-            self.graded[level] = touched.filter(|at| self.leaves[level].contains(at)).collect();
+            self.around_divided(level, watch, |octree, beside| {
+                if octree.leaves[level].contains(&beside) {
+                    octree.graded[level].insert(beside);
+                }
+            })?;
         }
+        Ok(())
+    }
+
+    /// Calls `each` for the cubes of a level that touch a divided one.
+    fn around_divided(
+        &mut self,
+        level: usize,
+        watch: &Watch,
+        mut each: impl FnMut(&mut Self, Index),
+    ) -> Result<(), SurfaceError> {
+        let divided: FxHashSet<Index> = self.leaves[level + 1].iter().map(|at| at.map(|x| x >> 1)).collect();
+        for (i, at) in divided.into_iter().enumerate() {
+            if i.is_multiple_of(ASKED_EVERY) {
+                watch.spend(ASKED_EVERY * OPERATIONS / 4)?;
+            }
+            for beside in around(at, level) {
+                each(self, beside);
+            }
+        }
+        Ok(())
     }
 
     /// Divides the leaf that contains a cube, if it is larger.
@@ -204,49 +252,43 @@ impl Octree {
         let size = self.size(level);
         let corner = leaf.map(|x| x * size);
         let middle = corner.map(|x| x + size / 2);
-        for axis in 0..3 {
-            for end in [0, 1] {
-                let mut face = corner;
-                face[axis] += end * size;
-                let mut emit = |at: Index, size: u32, level: usize| {
-                    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-                    let centre = moved(moved(at, u, size / 2), v, size / 2);
-                    let ring = [at, moved(at, u, size), moved(moved(at, u, size), v, size), moved(at, v, size)];
-                    for i in 0..4 {
-                        let (p, q) = (ring[i], ring[(i + 1) % 4]);
-                        let (p, q) = if end == 1 { (p, q) } else { (q, p) };
-                        if is_graded && self.is_edge_divided(p, q, level) {
-                            let half: Index = std::array::from_fn(|k| p[k].midpoint(q[k]));
-                            each([middle, centre, p, half]);
-                            each([middle, centre, half, q]);
-                        } else {
-                            each([middle, centre, p, q]);
-                        }
-                    }
-                };
-                if is_graded && self.is_face_divided(face, size, axis, end, level) {
-                    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-                    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                        let at = moved(moved(face, u, i * size / 2), v, j * size / 2);
-                        emit(at, size / 2, level + 1);
-                    }
-                } else {
-                    emit(face, size, level);
+        for (axis, end) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+            let face = Face { at: moved(corner, axis, end * size), size, axis, end, level };
+            if is_graded && self.is_face_divided(&face) {
+                for quarter in face.quarters() {
+                    self.fan(&quarter, middle, is_graded, &mut each);
                 }
+            } else {
+                self.fan(&face, middle, is_graded, &mut each);
+            }
+        }
+    }
+
+    /// Tetrahedra between the middle of a leaf, that of a face, and the edges of the face.
+    fn fan(&self, face: &Face, middle: Index, is_graded: bool, each: &mut impl FnMut([Index; 4])) {
+        let ([u, v], size) = (face.across(), face.size);
+        let centre = moved(moved(face.at, u, size / 2), v, size / 2);
+        let ring = [face.at, moved(face.at, u, size), moved(moved(face.at, u, size), v, size), moved(face.at, v, size)];
+        for i in 0..4 {
+            let (p, q) = (ring[i], ring[(i + 1) % 4]);
+            let (p, q) = if face.end == 1 { (p, q) } else { (q, p) };
+            if is_graded && self.is_edge_divided(p, q, face.level) {
+                let half: Index = std::array::from_fn(|k| p[k].midpoint(q[k]));
+                each([middle, centre, p, half]);
+                each([middle, centre, half, q]);
+            } else {
+                each([middle, centre, p, q]);
             }
         }
     }
 
     /// True if leaves of the next level are on the other side of a face.
-    fn is_face_divided(&self, face: Index, size: u32, axis: usize, end: u32, level: usize) -> bool {
-        let half = size / 2;
-        let first = face.map(|x| x / half);
-        let Some(across) = (first[axis] + end).checked_sub(1) else { return false };
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().any(|(i, j)| {
-            let mut at = moved(moved(first, u, i), v, j);
-            at[axis] = across;
-            self.leaves[level + 1].contains(&at)
+    fn is_face_divided(&self, face: &Face) -> bool {
+        face.quarters().iter().any(|quarter| {
+            let mut beyond = quarter.at.map(|x| x / quarter.size);
+            let Some(across) = (beyond[face.axis] + face.end).checked_sub(1) else { return false };
+            beyond[face.axis] = across;
+            self.leaves[quarter.level].contains(&beyond)
         })
     }
 
@@ -342,19 +384,17 @@ struct Marching<'a> {
     mesh: TriMesh,
 }
 
-/// Even permutations of the corners of a tetrahedron by the set of those inside: these come first.
+/// Even permutations of the corners of a tetrahedron by the set of those inside: these come first, or a single one outside.
 fn order(inside: u8) -> [usize; 4] {
     match inside {
-        0b0001 | 0b1110 => [0, 1, 2, 3],
         0b0010 | 0b1101 => [1, 0, 3, 2],
-        0b0100 | 0b1011 => [2, 3, 0, 1],
+        0b0100 | 0b1011 | 0b1100 => [2, 3, 0, 1],
         0b1000 | 0b0111 => [3, 2, 1, 0],
-        0b0011 => [0, 1, 2, 3],
         0b0101 => [0, 2, 3, 1],
         0b1001 => [0, 3, 1, 2],
         0b0110 => [1, 2, 0, 3],
         0b1010 => [1, 3, 2, 0],
-        _ => [2, 3, 0, 1],
+        _ => [0, 1, 2, 3],
     }
 }
 
@@ -463,8 +503,8 @@ mod tests {
         let small: Vec<Index> = octree.leaves[finest].drain().collect();
         octree.leaves[finest - 1].insert([0; 3]);
         octree.refine([1 << (finest - 1); 3].map(|x| x - 1), finest);
-        octree.balance();
-        octree.find_graded();
+        octree.balance(&Watch::NOBODY).expect("levels");
+        octree.find_graded(&Watch::NOBODY).expect("levels");
         for level in 2..=finest {
             for leaf in &octree.leaves[level] {
                 for beside in around(leaf.map(|x| x >> 1), level - 1) {

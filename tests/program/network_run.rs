@@ -92,7 +92,7 @@ fn a_valid_mesh_of_another_size_is_kept_before_an_invalid_one() {
 
 #[test]
 fn thin_branches_of_a_wide_vessel_are_well_shaped() {
-    for thin in [0.1, 0.03] {
+    for thin in [0.1, 0.03, 3e-3] {
         let points = [[-20.0, 0.0, 0.0], [0.0; 3], [20.0, 0.0, 0.0], [0.0, 0.0, 4.0]];
         let given = network(&points, &[(0, 1, 1.0), (1, 2, 1.0), (1, 3, thin)]);
         let made = Run::of_skeleton(given).mesh(&()).unwrap();

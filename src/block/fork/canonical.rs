@@ -26,8 +26,6 @@ pub struct Canonical {
     pub tets: Vec<[u16; 4]>,
     /// Number of leading points up to the last one on the boundary.
     pub boundary_points: usize,
-    /// Points joined by an edge to each of the other ones.
-    pub inner: Vec<Vec<u16>>,
     /// Triangles of the disc of each limb, facing outwards.
     pub discs: Vec<Triangles>,
     /// Triangles of the wall, facing outwards.
@@ -82,10 +80,9 @@ impl Canonical {
         let levels =
             free.into_iter().map(&mut level).filter(|level| level.rim.is_none_or(|i| fork.limbs[i].side == TIP));
         let levels = levels.collect();
-        let tets: Vec<[u16; 4]> = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
+        let tets = mesh.tets.iter().map(|t| t.map(|v| v as u16)).collect();
         Some(Self {
             fork,
-            inner: neighbours(&tets, boundary_points, mesh.points.len()),
             points: mesh.points,
             tets,
             boundary_points,
@@ -104,22 +101,6 @@ fn discs(fork: &Fork, made: &ClusterMesh) -> Option<Vec<Triangles>> {
     let mut disc =
         |limb: &Limb| Some(if limb.side == TIP { &caps.next()?.triangles } else { &cuts.next()?.triangles }.clone());
     fork.limbs.iter().map(&mut disc).collect()
-}
-
-/// Neighbours of the points from `first` on.
-fn neighbours(tets: &[[u16; 4]], first: usize, count: usize) -> Vec<Vec<u16>> {
-    let mut near = vec![Vec::new(); count - first];
-    for t in tets {
-        for (i, &v) in t.iter().enumerate().filter(|(_, v)| usize::from(**v) >= first) {
-            let list: &mut Vec<u16> = &mut near[usize::from(v) - first];
-            list.extend((0..4).filter(|&j| j != i).map(|j| t[j]));
-        }
-    }
-    for list in &mut near {
-        list.sort_unstable();
-        list.dedup();
-    }
-    near
 }
 
 /// Number of leading points up to the last one on the boundary.

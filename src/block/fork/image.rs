@@ -34,8 +34,6 @@ const MENDED: f64 = 0.2;
 const MENDED_ANGLE: f64 = 13.0;
 /// Minimum radius ratio of an image that is improved.
 const MENDABLE: f64 = 0.01;
-/// Sweeps over the inner points that follow the boundary.
-const SWEEPS: usize = 5;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
 
@@ -63,8 +61,7 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     let mut field = Field::new(&cluster.tubes, params.kappa).ok()?;
     let moved = |p: &Point3| moved(p, &canonical.fork, fork);
     let shifts = Shifts::new(&canonical.fork, [canonical.crotches, crotches(fork, &mut field)], moved);
-    let start: Vec<Point3> = canonical.points.iter().map(|p| moved(p) + shifts.at(p)).collect();
-    let mut points = start.clone();
+    let mut points: Vec<Point3> = canonical.points.iter().map(|p| moved(p) + shifts.at(p)).collect();
     let mut discs = vec![Triangles::new(); fork.limbs.len()];
     for (i, limb) in fork.limbs.iter().enumerate() {
         discs[limb.end as usize].clone_from(&canonical.discs[i]);
@@ -90,11 +87,7 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
     let (mut mesh, wall) = (TetMesh { points, tets }, canonical.wall.clone());
-    let is_good = |mesh: &TetMesh| is_above(mesh, LEAST, LEAST_ANGLE);
-    if is_good(&mesh) || {
-        follow(canonical, &start, &mut mesh.points);
-        is_good(&mesh)
-    } {
+    if is_above(&mesh, LEAST, LEAST_ANGLE) {
         // Limb of each end.
         let mut order: Vec<usize> = (0..discs.len()).collect();
         order.sort_by_key(|&limb| fork.limbs[limb].end);
@@ -111,21 +104,6 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;
     Some(FilledFork { mesh, discs, wall, topology: Arc::new(topology) })
-}
-
-/// Moves inner points as the boundary was moved away from `start`: by about the mean of their neighbours.
-fn follow(canonical: &Canonical, start: &[Point3], points: &mut [Point3]) {
-    let first = canonical.boundary_points;
-    let mut by: Vec<Vec3> = points.iter().zip(start).map(|(p, from)| p - from).collect();
-    for _ in 0..SWEEPS {
-        for (i, near) in canonical.inner.iter().enumerate() {
-            let sum: Vec3 = near.iter().map(|&v| by[usize::from(v)]).sum();
-            by[first + i] = sum / near.len() as f64;
-        }
-    }
-    for ((p, from), by) in points.iter_mut().zip(start).zip(&by).skip(first) {
-        *p = from + by;
-    }
 }
 
 /// Moves a point with the limbs of a fork: the mean of its images in their frames.

@@ -281,17 +281,31 @@ fn faults_of_caps() {
 
 /// The tube moved and rotated, with coordinates rounded to 32 bits.
 fn rounded(offset: f64) -> (VolumeMesh, Expectation) {
+    moved(offset, |x| f64::from(x as f32))
+}
+
+/// The tube moved and rotated.
+fn moved(offset: f64, round: impl Fn(f64) -> f64) -> (VolumeMesh, Expectation) {
     let (mut volume, expectation) = tube();
     let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, 0.2);
     let put = |p: Point3| turn * p + Vec3::new(offset, -2.0 * offset, offset);
     for p in &mut volume.mesh.points {
-        *p = put(*p).map(|x| f64::from(x as f32));
+        *p = put(*p).map(&round);
     }
     for cap in volume.patches.iter_mut().filter_map(|patch| patch.cap.as_mut()) {
         cap.center = put(cap.center);
         cap.normal = turn * cap.normal;
     }
     (volume, expectation)
+}
+
+#[test]
+fn caps_far_from_the_origin_are_flat_to_the_rounding_of_their_coordinates() {
+    let (mut volume, expectation) = moved(1e7, |x| x);
+    assert_eq!(failing(&volume, &expectation), []);
+    let head = volume.boundary.iter().zip(&volume.boundary_patch).find(|(_, id)| **id == 3).unwrap().0[0] as usize;
+    volume.mesh.points[head] += volume.patches[2].cap.unwrap().normal * 1e-6;
+    assert_eq!(failing(&volume, &expectation), [Line::CapFlat]);
 }
 
 #[test]
@@ -305,7 +319,7 @@ fn caps_of_rounded_coordinates_are_flat_to_their_rounding() {
         let bump = 4.0 * f64::from(f32::EPSILON) * (1.0 + 4.0 * offset);
         volume.mesh.points[head] = (place + volume.patches[2].cap.unwrap().normal * bump).map(|x| f64::from(x as f32));
         assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");
-        // With one 64-bit coordinate, rounding is no excuse.
+        // With one 64-bit coordinate, rounding to 32 bits is no excuse.
         volume.mesh.points[head] = place;
         volume.mesh.points[head].x += 1e-12 * (1.0 + offset);
         assert_eq!(failing(&volume, &expectation), [Line::CapFlat], "{offset}");

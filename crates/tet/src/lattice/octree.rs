@@ -51,7 +51,9 @@ impl<'a> Sized<'a> {
         for t in &surface.triangles {
             let [a, b, c] = t.map(|v| surface.points[v as usize]);
             let normal = (b - a).cross(&(c - a));
-            t.iter().for_each(|&v| normals[v as usize] += normal);
+            for &v in t {
+                normals[v as usize] += normal;
+            }
         }
         Some(Self { surface, sizes, tree, triangles: pairs.into_iter().map(|pair| pair[1]).collect(), first, normals })
     }
