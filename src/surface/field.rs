@@ -208,6 +208,15 @@ impl Field {
         if excess <= 1.0 { mean } else { harmonic * (ALIKE / (excess * excess)).max(1.0) }
     }
 
+    /// Field of the tubes with at least this radius, with the same weights. `None` for all or none of them.
+    pub(super) fn of_wide(&self, least: f64) -> Option<Self> {
+        let is_wide = |piece: &&TaperedSegment| piece.ra.min(piece.ra + piece.slope * piece.length) >= least;
+        let pieces: Vec<TaperedSegment> = self.pieces.iter().filter(is_wide).copied().collect();
+        let locator = (pieces.len() > FEW).then(|| Locator::new(&pieces));
+        let is_part = !pieces.is_empty() && pieces.len() < self.pieces.len();
+        is_part.then_some(Self { pieces, locator, visited: 0, ..*self })
+    }
+
     /// Largest radius of a tube.
     pub(crate) fn largest_radius(&self) -> f64 {
         self.pieces.iter().map(|p| p.ra.max(p.ra + p.slope * p.length)).fold(0.0, f64::max)

@@ -48,7 +48,7 @@ pub(super) fn contour(
     watch: &Watch,
 ) -> Result<TriMesh, SurfaceError> {
     let mut octree = Octree::new(tubes, field, params)?;
-    octree.divide(tubes, params, watch)?;
+    octree.divide(tubes, field, params, watch)?;
     octree.balance(watch)?;
     octree.find_graded(watch)?;
     let mut marching = Marching {
@@ -140,16 +140,16 @@ impl Octree {
         self.leaves.len() - 2
     }
 
-    /// Field of the vessels that are wide beside cubes of a level; `None` for all or none of them.
-    fn wide(&self, level: usize, tubes: &[Tube], params: &SurfaceParams) -> Option<Field> {
-        let least = WIDE * self.side / f64::from(1u32 << level);
-        let wide: Vec<Tube> = tubes.iter().filter(|tube| tube.min_radius() >= least).copied().collect();
-        if wide.len() == tubes.len() { None } else { Field::new(&wide, params.kappa).ok() }
-    }
-
     /// Adds the leaves.
-    fn divide(&mut self, tubes: &[Tube], params: &SurfaceParams, watch: &Watch) -> Result<(), SurfaceError> {
-        let mut wide: Vec<Option<Field>> = (0..=self.finest()).map(|level| self.wide(level, tubes, params)).collect();
+    fn divide(
+        &mut self,
+        tubes: &[Tube],
+        field: &Field,
+        params: &SurfaceParams,
+        watch: &Watch,
+    ) -> Result<(), SurfaceError> {
+        let sides = (0..=self.finest()).map(|level| self.side / f64::from(1u32 << level));
+        let mut wide: Vec<Option<Field>> = sides.map(|side| field.of_wide(WIDE * side)).collect();
         let mut pending = vec![Pending { level: 0, at: [0; 3], near: (0..tubes.len() as u32).collect() }];
         let mut count = 0;
         while let Some(Pending { level, at, near }) = pending.pop() {
@@ -488,6 +488,20 @@ mod tests {
             counts.push(mesh.triangles.len());
         }
         assert!(counts.iter().all(|&count| count < 4 * counts[0]), "{counts:?}");
+    }
+
+    #[test]
+    fn branches_at_one_node_are_joined_to_the_vessel() {
+        // Where many vessels meet, the field gives each less weight, so the wall is within that of the wide vessel alone.
+        let (tubes, params) = branch(1e-3);
+        let other = |x: f64, y: f64, z: f64, radius| tube([0.0; 3], [x, 1.1 * y, 1.1 * z], radius);
+        let more =
+            [other(0.0, -0.8, 0.6, 1e-3), other(0.0, 0.0, -1.0, 0.05), tube([-6.0, 0.0, 0.0], [-5.0, 0.0, 0.0], 1.0)];
+        let tubes = [&tubes[..], &more, &[tube([5.0, 0.1, 0.2], [6.0, 0.12, 0.24], 1.0)]].concat();
+        let mut field = Field::new(&tubes, KAPPA).expect("a field");
+        let mesh = contour(&tubes, &mut field, &params, &Watch::NOBODY).expect("a contour");
+        HalfEdges::new(&mesh).expect("a closed manifold");
+        assert_eq!(euler_characteristic(&mesh), 2);
     }
 
     #[test]
