@@ -49,7 +49,7 @@ pub(super) fn contour(
 ) -> Result<TriMesh, SurfaceError> {
     let mut octree = Octree::new(tubes, field, params)?;
     octree.divide(tubes, field, params, watch)?;
-    octree.balance(watch)?;
+    octree.balance(params.max_cells, watch)?;
     octree.find_graded(watch)?;
     let mut marching = Marching {
         octree: &octree,
@@ -183,9 +183,13 @@ impl Octree {
     }
 
     /// Divides leaves until those that touch differ by one level at most.
-    fn balance(&mut self, watch: &Watch) -> Result<(), SurfaceError> {
+    fn balance(&mut self, max_leaves: usize, watch: &Watch) -> Result<(), SurfaceError> {
         for level in (1..self.finest()).rev() {
             self.around_divided(level, watch, |octree, beside| octree.refine(beside, level))?;
+            let count: usize = self.leaves.iter().map(FxHashSet::len).sum();
+            if count > max_leaves {
+                return Err(SurfaceError::TooLarge { cells: count as f64, limit: max_leaves });
+            }
         }
         Ok(())
     }
@@ -212,7 +216,7 @@ impl Octree {
         let divided: FxHashSet<Index> = self.leaves[level + 1].iter().map(|at| at.map(|x| x >> 1)).collect();
         for (i, at) in divided.into_iter().enumerate() {
             if i.is_multiple_of(ASKED_EVERY) {
-                watch.spend(ASKED_EVERY * OPERATIONS / 4)?;
+                watch.spend(ASKED_EVERY * OPERATIONS)?;
             }
             for beside in around(at, level) {
                 each(self, beside);
@@ -517,7 +521,7 @@ mod tests {
         let small: Vec<Index> = octree.leaves[finest].drain().collect();
         octree.leaves[finest - 1].insert([0; 3]);
         octree.refine([1 << (finest - 1); 3].map(|x| x - 1), finest);
-        octree.balance(&Watch::NOBODY).expect("levels");
+        octree.balance(usize::MAX, &Watch::NOBODY).expect("levels");
         octree.find_graded(&Watch::NOBODY).expect("levels");
         for level in 2..=finest {
             for leaf in &octree.leaves[level] {
