@@ -180,19 +180,37 @@ impl Caps {
     }
 }
 
+/// Faces of caps whose points are read at a time.
+const FACES: usize = 1 << 14;
+
 /// The area of each patch but the wall.
 fn areas(mesh: &dyn MeshSource) -> io::Result<BTreeMap<i32, f64>> {
     let (mut faces, mut patches) = (Vec::new(), Vec::new());
+    let mut areas = BTreeMap::new();
     mesh.each_faces(|piece| {
         for (&face, &patch) in piece.faces.iter().zip(&*piece.patches).filter(|(_, patch)| **patch != WALL) {
             faces.push(face);
             patches.push(patch);
         }
+        if faces.len() >= FACES {
+            add_areas(mesh, &mut faces, &mut patches, &mut areas)?;
+        }
         Ok(())
     })?;
-    let mut areas = BTreeMap::new();
-    for ([a, b, c], patch) in mesh.corners_of(&faces)?.into_iter().zip(patches) {
+    add_areas(mesh, &mut faces, &mut patches, &mut areas)?;
+    Ok(areas)
+}
+
+/// Adds the areas of faces to those of their patches, and removes the faces.
+fn add_areas(
+    mesh: &dyn MeshSource,
+    faces: &mut Vec<[u32; 3]>,
+    patches: &mut Vec<i32>,
+    areas: &mut BTreeMap<i32, f64>,
+) -> io::Result<()> {
+    for ([a, b, c], patch) in mesh.corners_of(faces)?.into_iter().zip(patches.drain(..)) {
         *areas.entry(patch).or_insert(0.0) += triangle_area_vector(&a, &b, &c).norm();
     }
-    Ok(areas)
+    faces.clear();
+    Ok(())
 }
