@@ -132,12 +132,18 @@ pub const FORK_PLACES: usize = 12;
 /// Cell of similar bifurcations, which have one template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct ForkCell {
-    /// True for a large cell, for forks that have few alike.
-    pub is_coarse: bool,
     /// Sides of the ends of the vessels.
     pub sides: [u8; 3],
     /// Steps of the coordinates of the shape.
     pub steps: [i8; FORK_PLACES],
+}
+
+impl ForkCell {
+    /// Steps of the height and of the azimuths.
+    pub(crate) fn leading(&self) -> [i8; 3] {
+        let [height, first, second, ..] = self.steps;
+        [height, first, second]
+    }
 }
 
 /// Cells of the clusters of a network.

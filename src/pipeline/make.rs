@@ -209,8 +209,7 @@ fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: Ret
         key.id(end.overrun);
     }
     key.count(cluster.cells.len());
-    for ForkCell { is_coarse, sides, steps } in &cluster.cells {
-        key.id(u32::from(*is_coarse));
+    for ForkCell { sides, steps } in &cluster.cells {
         for id in sides.map(u32::from).into_iter().chain(steps.map(|step| step as u32)) {
             key.id(id);
         }

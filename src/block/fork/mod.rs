@@ -6,8 +6,8 @@
 //! bit. A canonical fork depends on its cell alone, so the result does not depend on the order of forks. If an image has poor
 //! tetrahedra that improvement does not mend, the fork is contoured.
 //!
-//! Only cells that several forks of the network are in have a canonical fork ([`shared_cells`]). Each fork is an image of that
-//! of the nearest of these cells. If that fails, of the second nearest.
+//! Only cells that several forks of the network are in or near have a canonical fork ([`shared_cells`]). Each fork is an image of
+//! that of the nearest of these cells. If that fails, of the second nearest.
 
 mod cache;
 mod canonical;

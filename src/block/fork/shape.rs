@@ -5,19 +5,11 @@ use anastomesh_mesh::geometry::{Point3, Section, Tube, Vec3};
 use anastomesh_skeleton::NodeId;
 use std::f64::consts::TAU;
 
-/// Size of a cell.
-#[derive(Clone, Copy)]
-struct Steps {
-    /// Number of steps in a turn.
-    turn: f64,
-    height: f64,
-    /// Of the logarithms of radii and lengths.
-    radius: f64,
-    length: f64,
-}
-
-const FINE: Steps = Steps { turn: 18.0, height: 0.3, radius: 0.25, length: 0.3 };
-const COARSE: Steps = Steps { turn: 12.0, height: 0.4, radius: 0.4, length: 0.45 };
+/// Size of a cell: steps in a turn, of the height, and of the logarithms of radii and lengths.
+const TURN: f64 = 18.0;
+const HEIGHT: f64 = 0.3;
+const RADIUS: f64 = 0.25;
+const LENGTH: f64 = 0.3;
 /// Length of a vessel in the middle of a cell, in radii: about the distance of most cuts.
 const USUAL_LENGTH: f64 = 2.2;
 /// Largest sine of the angle between the axis of a vessel at its cut and its chord.
@@ -63,7 +55,6 @@ pub struct Fork {
 /// Shape of a fork.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    is_coarse: bool,
     /// Sides of the ends of the vessels.
     pub sides: [u8; LIMBS],
     /// Coordinates in steps of a cell.
@@ -73,31 +64,40 @@ pub struct Shape {
 impl Shape {
     /// Cell that it is in; `None` if a step is out of range.
     pub fn cell(&self) -> Option<ForkCell> {
-        let Self { is_coarse, sides, places } = *self;
+        let Self { sides, places } = *self;
         let is_in_range = places.iter().all(|place| place.abs() <= 100.0);
         let mut steps = places.map(|place| place.round() as i8);
         // Half a turn has two names.
-        let half = (steps_of(is_coarse).turn / 2.0) as i8;
+        let half = (TURN / 2.0) as i8;
         steps[AZIMUTHS].iter_mut().filter(|step| **step == -half).for_each(|step| *step = half);
-        is_in_range.then_some(ForkCell { is_coarse, sides, steps })
+        is_in_range.then_some(ForkCell { sides, steps })
     }
 
-    /// Smallest and largest first step of the cells whose middle is at most so far away.
-    pub fn first_steps(&self, most: f32) -> [i8; 2] {
-        [(self.places[0] - most).ceil() as i8, (self.places[0] + most).floor() as i8]
+    /// Leading steps of the cells whose middle may be within a distance.
+    pub fn leading(&self, most: f32) -> Vec<[i8; 3]> {
+        let near = |place: f32| (place - most).ceil() as i8..=(place + most).floor() as i8;
+        let half = (TURN / 2.0) as i8;
+        let turned = |step: i8| if step > half { step - 2 * half } else if step <= -half { step + 2 * half } else { step };
+        let [height, first, second] = [0, 1, 2].map(|i| near(self.places[i]));
+        let mut leading = Vec::new();
+        for h in height {
+            for a in first.clone() {
+                leading.extend(second.clone().map(|b| [h, turned(a), turned(b)]));
+            }
+        }
+        leading
     }
 
-    /// Square of the distance from the middle of a cell; `None` if a coordinate differs by more than `most`.
+    /// Square of the distance from the middle of a cell, in steps; `None` if it is larger than `most`.
     pub fn distance(&self, cell: &ForkCell, most: f32) -> Option<f32> {
         let mut sum = 0.0;
-        let turn = steps_of(self.is_coarse).turn as f32;
         for (i, (place, &step)) in self.places.iter().zip(&cell.steps).enumerate() {
             let along = (place - f32::from(step)).abs();
-            let along = if AZIMUTHS.contains(&i) { along.min(turn - along) } else { along };
-            if along > most {
+            let along = if AZIMUTHS.contains(&i) { along.min(TURN as f32 - along) } else { along };
+            sum += along * along;
+            if sum > most * most {
                 return None;
             }
-            sum += along * along;
         }
         Some(sum)
     }
@@ -149,28 +149,27 @@ impl Fork {
 
     /// Shape, with its coordinates in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
     /// vessel.
-    pub fn shape(&self, is_coarse: bool) -> Option<Shape> {
-        let steps = steps_of(is_coarse);
+    pub fn shape(&self) -> Option<Shape> {
         let normal = self.normal()?;
         let across = |limb: &Limb| limb.axis - normal * normal.dot(&limb.axis);
         let first = across(&self.limbs[0]);
         let azimuth = |limb: &Limb| {
             let other = across(limb);
-            libm::atan2(normal.dot(&first.cross(&other)), first.dot(&other)) * steps.turn / TAU
+            libm::atan2(normal.dot(&first.cross(&other)), first.dot(&other)) * TURN / TAU
         };
-        let radius = |[r, of]: [f64; 2]| libm::log(r / of) / steps.radius;
+        let radius = |[r, of]: [f64; 2]| libm::log(r / of) / RADIUS;
         let mut places = [0.0; FORK_PLACES];
-        places[0] = normal.dot(&self.limbs[0].axis) / steps.height;
+        places[0] = normal.dot(&self.limbs[0].axis) / HEIGHT;
         for (limb, place) in self.limbs[1..].iter().zip(&mut places[AZIMUTHS]) {
             *place = azimuth(limb);
         }
         for (limb, places) in self.limbs.iter().zip(places[3..].chunks_mut(3)) {
-            let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / steps.length;
+            let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / LENGTH;
             let [near, far] = limb.radii;
             places.copy_from_slice(&[radius([near, self.radius]), radius([far, near]), length]);
         }
         let sides = std::array::from_fn(|i| self.limbs.get(i).map_or(NONE, |limb| limb.side));
-        Some(Shape { is_coarse, sides, places: places.map(|place| place as f32) })
+        Some(Shape { sides, places: places.map(|place| place as f32) })
     }
 }
 
@@ -189,18 +188,17 @@ fn vessel(cluster: &Cluster, end: &ClusterEnd) -> Option<(Point3, [f64; 2])> {
 /// Fork in the middle of a cell, with its node at the origin and radius 1, as a cluster. `overrun`: length of the extension
 /// beyond a cut, in radii. `stretch`: factor of all lengths.
 pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
-    let steps = steps_of(cell.is_coarse);
     let place = |i: usize| f64::from(cell.steps[i]);
-    let height = (steps.height * place(0)).clamp(-0.9, 0.9);
+    let height = (HEIGHT * place(0)).clamp(-0.9, 0.9);
     let across = (1.0 - height * height).sqrt();
     let mut cluster = Cluster::default();
     for (i, side) in cell.sides.into_iter().enumerate().filter(|(_, side)| *side != NONE) {
-        let azimuth = if i == 0 { 0.0 } else { TAU / steps.turn * place(i) };
+        let azimuth = if i == 0 { 0.0 } else { TAU / TURN * place(i) };
         let (y, x) = libm::sincos(azimuth);
         let axis = Vec3::new(across * x, across * y, height);
         let [radius, taper, length] = [0, 1, 2].map(|k| place(3 + 3 * i + k));
-        let [from, to] = [radius, radius + taper].map(|place| libm::exp(steps.radius * place));
-        let length = stretch * USUAL_LENGTH * to * libm::exp(steps.length * length);
+        let [from, to] = [radius, radius + taper].map(|place| libm::exp(RADIUS * place));
+        let length = stretch * USUAL_LENGTH * to * libm::exp(LENGTH * length);
         let at = Point3::from(axis * length);
         let index = cluster.tubes.len() as u32 + 1;
         cluster.tubes.push(Tube { a: Point3::origin(), b: at, ra: from, rb: to });
@@ -213,8 +211,4 @@ pub fn middle(cell: &ForkCell, overrun: f64, stretch: f64) -> Cluster {
         cluster.ends.push(ClusterEnd { section, kind, overrun: index });
     }
     cluster
-}
-
-fn steps_of(is_coarse: bool) -> Steps {
-    if is_coarse { COARSE } else { FINE }
 }

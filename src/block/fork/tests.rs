@@ -34,7 +34,7 @@ fn cluster<const N: usize>(node: Point3, turn: Rotation3<f64>, rise: f64, vessel
 }
 
 fn own_cell(cluster: &Cluster) -> Option<ForkCell> {
-    Fork::of(cluster)?.shape(false)?.cell()
+    Fork::of(cluster)?.shape()?.cell()
 }
 
 fn in_own_cell(cluster: Cluster) -> Cluster {
@@ -207,26 +207,42 @@ fn forks_are_images_of_the_nearest_shared_cells() {
         (vessels[1].0, vessels[1].2) = (azimuth, [radius; 2]);
         cluster(Point3::origin(), turned(azimuth), 0.0, vessels)
     };
-    // Four in one small cell; four in another and one beside it; four in four small cells of one large cell; one alone.
-    let alike = (0..4).map(|i| fork(122.0 + f64::from(i), 0.95));
-    let similar = [95.0, 96.0, 98.0, 104.0, 92.0].map(|azimuth| fork(azimuth, 0.5));
-    let loose = [(92.0, 0.3), (92.0, 0.33), (102.0, 0.3), (102.0, 0.33)].map(|(azimuth, radius)| fork(azimuth, radius));
+    // Eight in one cell; eight in another and one beside it; three in three cells near each other; one alone.
+    let alike = (0..8).map(|i| fork(122.0 + 0.5 * f64::from(i), 0.95));
+    let similar = [95.0, 96.0, 98.0, 104.0, 95.5, 96.5, 97.0, 97.5, 92.0].map(|azimuth| fork(azimuth, 0.5));
+    let loose = [(92.0, 0.26), (92.0, 0.29), (102.0, 0.26)].map(|(azimuth, radius)| fork(azimuth, radius));
     let clusters: Vec<Cluster> = alike.chain(similar).chain(loose).chain([fork(150.0, 0.1)]).collect();
     let cells_of = |count: u32| shared_cells(count, |i| clusters[i as usize].clone());
-    let cells = cells_of(14);
+    let cells = cells_of(21);
     let own = |i: u32| vec![own_cell(&clusters[i as usize]).expect("a cell")];
     assert_eq!(cells.chosen.len(), 3);
-    for (forks, cell) in [(0..4, own(0)), (4..9, own(4))] {
+    for (forks, cell) in [(0..8, own(0)), (8..17, own(8))] {
         forks.for_each(|i| assert_eq!(cells.of(i), cell, "{i}"));
     }
-    assert_ne!(own(8), own(4));
-    for i in 9..13 {
-        assert!(matches!(cells.of(i)[..], [ForkCell { is_coarse: true, .. }]), "{i}");
+    assert_ne!(own(16), own(8));
+    let loose: Vec<ForkCell> = (17..20).flat_map(own).collect();
+    for i in 17..20 {
+        assert_eq!(cells.of(i)[..], cells.chosen[2..], "{i}");
     }
-    assert!(cells.of(13).is_empty() && cells_of(3).chosen.is_empty());
+    assert!(loose.contains(&cells.chosen[2]) && loose[0] != loose[1] && loose[0] != loose[2]);
+    // Two are not enough.
+    assert!(cells.of(20).is_empty() && cells_of(2).chosen.is_empty() && cells_of(7).chosen.len() == 1);
     let image =
         |i: u32, cells: Vec<ForkCell>| super::fork(&Cluster { cells, ..clusters[i as usize].clone() }, &shared());
-    assert!(image(0, own(0)).is_some() && image(0, Vec::new()).is_none() && image(8, cells.of(8)).is_some());
+    assert!(image(0, own(0)).is_some() && image(0, Vec::new()).is_none() && image(16, cells.of(16)).is_some());
     // The second cell is tried if the first one has no image of the fork.
-    assert!(image(0, vec![own(13)[0], own(0)[0]]).is_some() && image(0, own(13)).is_none());
+    assert!(image(0, vec![own(20)[0], own(0)[0]]).is_some() && image(0, own(20)).is_none());
+}
+
+#[test]
+fn azimuths_beside_half_a_turn_are_near_each_other() {
+    let fork = |azimuth: f64| {
+        let mut vessels = plain();
+        (vessels[1].0, vessels[2].0) = (azimuth, 60.0);
+        cluster(Point3::origin(), turned(0.0), 0.0, vessels)
+    };
+    let clusters: Vec<Cluster> = (0..9).map(|i| fork(if i < 8 { 168.0 } else { -168.0 })).collect();
+    let cells = shared_cells(9, |i| clusters[i as usize].clone());
+    assert_ne!(own_cell(&clusters[0]), own_cell(&clusters[8]));
+    assert_eq!(cells.of(8), cells.of(0));
 }
