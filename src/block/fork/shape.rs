@@ -77,7 +77,15 @@ impl Shape {
     pub fn leading(&self, most: f32) -> Vec<[i8; 3]> {
         let near = |place: f32| (place - most).ceil() as i8..=(place + most).floor() as i8;
         let half = (TURN / 2.0) as i8;
-        let turned = |step: i8| if step > half { step - 2 * half } else if step <= -half { step + 2 * half } else { step };
+        let turned = |step: i8| {
+            if step > half {
+                step - 2 * half
+            } else if step <= -half {
+                step + 2 * half
+            } else {
+                step
+            }
+        };
         let [height, first, second] = [0, 1, 2].map(|i| near(self.places[i]));
         let mut leading = Vec::new();
         for h in height {

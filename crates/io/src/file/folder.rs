@@ -53,12 +53,12 @@ impl AtomicFolder {
         AtomicFile::create(&self.place(name)?)
     }
 
-    /// Creates a file without waiting for the disk, for formats that detect missing data.
+    /// Creates a file without waiting for the disk. The folder is flushed as a whole.
     pub fn quick_file(&self, name: &str) -> io::Result<BufWriter<File>> {
         Ok(BufWriter::with_capacity(1 << 18, File::create(self.place(name)?)?))
     }
 
-    /// Writes a small file without waiting for the disk, which would take minutes for thousands of files.
+    /// Writes a small file without waiting for the disk, as [`quick_file`](Self::quick_file).
     pub fn put(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
         fs::write(self.place(name)?, bytes)
     }

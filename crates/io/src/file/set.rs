@@ -2,13 +2,15 @@
 
 use super::atomic::AtomicFile;
 use super::error::OutputError;
-use super::staged::Staged;
+use super::staged::{Staged, sync_names};
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Complete files and folders under temporary names. [`OutputSet::place`] moves all to their paths, dropping removes them.
 ///
-/// A kill of the process between two moves can still leave new files beside earlier ones.
+/// A kill of the process between two moves can still leave new files beside earlier ones, as can a loss of power before
+/// [`OutputSet::place`] returns. Each file is complete then.
 ///
 /// ```
 /// use anastomesh_io::OutputSet;
@@ -70,17 +72,22 @@ impl OutputSet {
         self.staged.iter().find(|staged| staged.target() == target).map(Staged::temporary)
     }
 
-    /// Moves all outputs to their paths and replaces earlier ones. On failure, all earlier outputs are restored.
+    /// Moves all outputs to their paths and replaces earlier ones. Contents are on the disk before, and the new names after it.
+    /// On failure, all earlier outputs are restored.
     ///
     /// # Errors
     /// The operating system reports an error. Its text names each earlier output that could not be restored, with the
     /// hidden file beside its path that holds it. Later runs do not remove that file.
     pub fn place(mut self) -> Result<(), OutputError> {
         let last = self.staged.len().saturating_sub(1);
-        let kept = self.each(|i, staged| staged.keep_earlier(i == last));
+        let complete = self.each(|_, staged| staged.complete());
+        let kept = complete.and_then(|()| self.each(|i, staged| staged.keep_earlier(i == last)));
         // No other work between these moves: a kill between them would leave some outputs new and others old.
         match kept.and_then(|()| self.each(|_, staged| staged.place())) {
             Ok(()) => {
+                let folders: BTreeSet<&Path> =
+                    self.staged.iter().filter_map(|staged| staged.target().parent()).collect();
+                folders.into_iter().for_each(sync_names);
                 self.staged.iter_mut().for_each(Staged::drop_earlier);
                 Ok(())
             }

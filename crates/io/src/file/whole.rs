@@ -23,9 +23,7 @@ pub fn read_bytes<F: Error>(path: &Path) -> Result<Vec<u8>, FileError<F>> {
 
 /// Writes a file atomically.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> io::Result<()> {
-    let mut file = AtomicFile::create(path)?;
-    write(&mut file)?;
-    file.commit()
+    stage_whole(path, write)?.place().map_err(|error| error.source)
 }
 
 /// Writes a file under a temporary name, completely and to the disk.

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// System calls on files with the errors to return.
-const CALLS: [(&str, &[&str]); 19] = [
+const CALLS: [(&str, &[&str]); 22] = [
     ("write", &["ENOSPC", "EIO", "EINTR", "EDQUOT"]),
     ("writev", &["ENOSPC", "EIO", "EINTR"]),
     ("pwrite64", &["ENOSPC", "EIO", "EINTR"]),
@@ -22,6 +22,9 @@ const CALLS: [(&str, &[&str]); 19] = [
     ("renameat2", &["EACCES", "EIO", "EXDEV"]),
     ("fsync", &["EIO", "EINTR", "ENOSPC"]),
     ("fdatasync", &["EIO", "EINTR"]),
+    ("syncfs", &["EIO", "ENOSPC"]),
+    ("link", &["EACCES", "EPERM", "ENOSPC"]),
+    ("linkat", &["EACCES", "EPERM", "ENOSPC"]),
     ("ftruncate", &["EIO", "EINTR", "ENOSPC"]),
     ("fallocate", &["EIO", "ENOSPC", "EOPNOTSUPP"]),
     ("unlink", &["EACCES", "EIO"]),
@@ -36,16 +39,15 @@ const CALLS: [(&str, &[&str]); 19] = [
 
 /// A call of the undisturbed run: name, number among the calls of this name in its thread, and text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Call {
-    name: String,
-    number: u64,
+pub struct Call {
+    pub name: String,
+    pub number: u64,
     text: String,
 }
 
 /// Lets one call on a file of the run fail, and runs the job again.
 pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
-    if !Command::new("strace").arg("-V").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
-    {
+    if !has_strace() {
         return Ok(skipped("strace is missing"));
     }
     let calls = calls(trial)?;
@@ -94,6 +96,12 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
     Ok(Judged { outcome, seconds: run.seconds, stderr: run.stderr })
 }
 
+/// True if strace is installed.
+pub fn has_strace() -> bool {
+    let status = Command::new("strace").arg("-V").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    status.is_ok_and(|status| status.success())
+}
+
 /// Text of a call with paths relative to the folder of the run. Findings are kept in the repository.
 fn without_folder(text: &str, folder: &Path) -> String {
     let folder = folder.display().to_string();
@@ -105,7 +113,8 @@ fn hits_stderr(log: &str) -> bool {
     log.lines().any(|line| line.contains("write(2<") && line.contains("(INJECTED)"))
 }
 
-fn strace(trial: &Trial, log: &str) -> Command {
+/// Command that records calls on files.
+pub fn strace(trial: &Trial, log: &str) -> Command {
     let mut command = Command::new("strace");
     let names: Vec<&str> = CALLS.iter().map(|(name, _)| *name).collect();
     command.args(["-f", "-qq", "-y", "-s", "0", "-o", log, "-e", &format!("trace={}", names.join(","))]);
@@ -114,7 +123,7 @@ fn strace(trial: &Trial, log: &str) -> Command {
 }
 
 /// Calls of an undisturbed run on files of the output and work folders.
-fn calls(trial: &Trial) -> io::Result<Vec<Call>> {
+pub fn calls(trial: &Trial) -> io::Result<Vec<Call>> {
     let log = trial.folder.with_extension("strace");
     let mut command = strace(trial, &log.to_string_lossy());
     command.arg(trial.mesher).args(trial.job.arguments());

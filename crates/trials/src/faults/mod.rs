@@ -1,9 +1,10 @@
-//! Faults: kills, full disks, refused system calls. Earlier files must stay, and a second run must give the same bytes.
+//! Faults: kills, full disks, refused system calls, losses of power. Earlier files must stay, and a second run must give the same bytes.
 
 mod disk;
 mod inject;
 mod jobs;
 mod kill;
+mod power;
 mod trial;
 
 use crate::judge::{Judged, Programs};
@@ -30,6 +31,8 @@ pub enum Fault {
     ReadOnly,
     /// System call that fails, by strace.
     Call,
+    /// Loss of power, by strace.
+    Power,
 }
 
 /// Results of undisturbed runs, by job.
@@ -50,7 +53,8 @@ impl References {
 
 impl Fault {
     /// All faults.
-    pub const ALL: [Self; 6] = [Self::Term, Self::Kill, Self::Full, Self::FileSize, Self::ReadOnly, Self::Call];
+    pub const ALL: [Self; 7] =
+        [Self::Term, Self::Kill, Self::Full, Self::FileSize, Self::ReadOnly, Self::Call, Self::Power];
 
     /// Name.
     pub fn name(self) -> &'static str {
@@ -61,6 +65,7 @@ impl Fault {
             Self::FileSize => "limit on the size of files",
             Self::ReadOnly => "read-only output folder",
             Self::Call => "failing system call",
+            Self::Power => "loss of power",
         }
     }
 
@@ -81,6 +86,7 @@ impl Fault {
             Self::FileSize => disk::file_size(&trial, &mut random),
             Self::ReadOnly => disk::read_only(&trial),
             Self::Call => inject::judge(&trial, &mut random),
+            Self::Power => power::judge(&trial, &mut random),
         };
         disk::unmount(folder);
         judged
