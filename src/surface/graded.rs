@@ -12,6 +12,7 @@ use anastomesh_mesh::geometry::{Point3, Tube, Vec3, point_segment};
 use anastomesh_skeleton::resolution::GROWTH;
 use anastomesh_tet::parts::Watch;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
 
 /// Side of a leaf, in target edge lengths. Tetrahedra have edges of about half a side.
 const SIDE: f64 = 1.3;
@@ -114,7 +115,8 @@ impl Face {
 struct Pending {
     level: usize,
     at: Index,
-    near: Vec<u32>,
+    /// Vessels whose walls may cross it, or that its size depends on.
+    near: Rc<[u32]>,
 }
 
 impl Octree {
@@ -176,8 +178,8 @@ impl Octree {
             }
             let is_near = |tube: &Nearby| tube.may_cross() || SIDE * target(tube) < side / 2.0;
             let kept = near.iter().zip(&around).filter(|(_, tube)| is_near(tube));
-            let near: Vec<u32> = kept.map(|(&i, _)| i).collect();
-            pending.extend(children(at).map(|at| Pending { level: level + 1, at, near: near.clone() }));
+            let near: Rc<[u32]> = kept.map(|(&i, _)| i).collect();
+            pending.extend(children(at).map(|at| Pending { level: level + 1, at, near: Rc::clone(&near) }));
         }
         Ok(())
     }

@@ -28,6 +28,7 @@ use anastomesh_mesh::Kept;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::geometry::DisjointSets;
 use anastomesh_mesh::geometry::{Point3, Tube, Vec3, place_key, point_segment};
+use anastomesh_skeleton::cuttability::THIN;
 use anastomesh_tet::parts::Watch;
 use halfedge::HalfEdges;
 use relax::Relaxation;
@@ -128,15 +129,12 @@ pub(crate) fn lengths_outside(tubes: &[Tube]) -> Vec<f64> {
         let most: &mut f64 = widest.entry(place).or_insert(radius);
         *most = most.max(radius);
     }
-    let within = |(place, radius)| if widest[&place] > MUCH_WIDER * radius { widest[&place] } else { 0.0 };
+    let within = |(place, radius)| if radius < THIN * widest[&place] { widest[&place] } else { 0.0 };
     tubes.iter().map(|t| (t.length() - ends(t).into_iter().map(within).sum::<f64>()).max(0.0)).collect()
 }
 
-/// Ratio of radii from which a tube counts from the wall of the other one.
-const MUCH_WIDER: f64 = 8.0;
-
 /// Ratios of edge lengths for which the grid is graded. Coordinates have too few bits for more.
-const GRADED: std::ops::Range<f64> = 8.0..1.0001e8;
+const GRADED: std::ops::Range<f64> = 1.0 / THIN..1.0001e8;
 
 /// True if the grid is graded. `follow`: exponent of the growth of edges with the radius.
 fn is_graded(tubes: &[Tube], follow: f64) -> bool {

@@ -20,8 +20,9 @@ pub const CONNECTOR_ROOM: f64 = 1.0;
 
 /// Fraction of equation 11's distance in radii of the vessel itself; the rest is in those of its neighbours.
 const OWN_SHARE: f64 = 0.6;
-/// Radius of a thin vessel relative to its neighbour's, and its part of the distance in the neighbour's radii.
-const THIN: f64 = 0.125;
+/// Radius of a thin vessel relative to that of its neighbour. It counts from the neighbour's wall, not from the node.
+pub const THIN: f64 = 0.125;
+/// Its part of the distance in the neighbour's radii.
 const THIN_DISTANCE: f64 = 1.25;
 /// Length over which the direction of a branch is measured, in radii of the node.
 const DIRECTION_WINDOW: f64 = 3.0;

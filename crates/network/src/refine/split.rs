@@ -1,6 +1,7 @@
 //! Splitting of nodes (section 3.1 of the paper): a node of valence above 3 becomes a chain of nodes of valence 3.
 
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::cuttability::THIN;
 use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Skeleton};
 use serde::Serialize;
 use std::sync::Arc;
@@ -10,10 +11,6 @@ const HALVINGS: u32 = 8;
 /// Sum of the shifts at a node, in its radii, if vessels are not to be moved apart. A smaller one gives tubes of bifurcations that
 /// are shorter than the contour resolves; a larger one widens the lumen at nodes of many vessels.
 const IN_PLACE: f64 = 0.1;
-
-/// Radius of a thin vessel relative to that of its node. Such vessels share one node on a wide vessel: shifts that are small for the
-/// wide vessel would be many radii of theirs.
-const THIN: f64 = 0.125;
 
 /// Node that was split, with the nodes and edges made of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
