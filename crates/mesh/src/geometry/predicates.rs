@@ -198,6 +198,54 @@ mod tests {
         }
     }
 
+    /// Units of length, and a factor near each.
+    fn unit() -> impl Strategy<Value = f64> {
+        let powers = prop::sample::select(vec![-70, -20, 0, 20, 70, 180]);
+        (powers, 1.0..2.0_f64).prop_map(|(power, factor)| factor * libm::exp2(f64::from(power)))
+    }
+
+    fn anywhere() -> impl Strategy<Value = Point3> {
+        prop::array::uniform3(-1.0..1.0_f64).prop_map(Point3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1000))]
+
+        #[test]
+        fn orientations_of_nearly_coplanar_points_are_exact_in_any_unit(
+            p in prop::array::uniform3(anywhere()), [u, v] in prop::array::uniform2(-1.0..2.0_f64), unit in unit(),
+        ) {
+            // The fourth point is off the plane by rounding alone.
+            let d = p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v;
+            let p = [p[0], p[1], p[2], d].map(|p| p * unit);
+            let expected = orient3d_oracle(&p);
+            prop_assert_eq!(sign_f(orient3d(&p[0], &p[1], &p[2], &p[3])), expected);
+            prop_assert_eq!(sign_f(orient3d_accurate(&p[0], &p[1], &p[2], &p[3])), expected);
+        }
+
+        #[test]
+        fn nearly_cospherical_points_are_exact_in_any_unit(
+            p in prop::array::uniform5(anywhere()), center in anywhere(), unit in unit(),
+        ) {
+            prop_assume!(p.iter().all(|p| p.coords.norm() > 0.1));
+            let p = p.map(|p| (center + p.coords.normalize()) * unit);
+            let found = insphere(&p[0], &p[1], &p[2], &p[3], &p[4]);
+            prop_assert_eq!(sign_f(found), insphere_oracle(&p));
+            prop_assert_eq!(sign_f(insphere_exact(&p[0], &p[1], &p[2], &p[3], &p[4])), insphere_oracle(&p));
+        }
+    }
+
+    #[test]
+    fn bounds_of_spheres_grow_with_the_fifth_power_of_lengths() {
+        let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]].map(Point3::from);
+        for power in [-20, 0, 7] {
+            let unit = libm::exp2(f64::from(power));
+            let [a, b, c, d] = corners.map(|p| p * unit);
+            let expected = 3.0 * INSPHERE_BOUND * unit.powi(5);
+            assert_eq!(insphere_bound([&a, &b, &c, &d], &Point3::origin()).to_bits(), expected.to_bits());
+        }
+    }
+
     #[test]
     fn signs_follow_the_house_convention() {
         let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
