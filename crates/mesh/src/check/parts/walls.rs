@@ -13,7 +13,7 @@ use std::io;
 use std::sync::Arc;
 
 /// Parts whose neighbours are searched at a time.
-const SEARCH_BATCH: usize = 2048;
+const SEARCH_BATCH: usize = 512;
 
 /// Bytes of a wall besides its faces.
 const OVERHEAD: u64 = 200;
