@@ -153,16 +153,37 @@ mod tests {
         prop::collection::vec(point(scale), n)
     }
 
+    /// Asserts that an orientation differs from the exact one by a billionth at most.
+    fn assert_accurate([a, b, c, d]: [&Point3; 4]) {
+        let expected = det(&differences(a, &[b, c, d]));
+        let error = exact(orient3d_accurate(a, b, c, d)) - &expected;
+        let square = |x: &BigRational| x * x;
+        assert!(square(&error) <= square(&expected) * exact(1e-18), "{a} {b} {c} {d}");
+    }
+
     #[test]
     fn accurate_orientations_have_nine_digits() {
         let [a, b, c] = [[0.1, 0.2, 0.3], [1.3, 0.7, 0.9], [0.4, 1.1, -0.3]].map(Point3::from);
-        for step in 0..60 {
+        for (step, unit) in (0..60).flat_map(|step| [-40, 0, 40].map(|power| (step, libm::exp2(f64::from(power))))) {
             // Nearer and nearer to the plane.
             let d = a + 0.3 * (b - a) + 0.4 * (c - a) + super::super::Vec3::z() * libm::exp2(f64::from(step)).recip();
-            let expected = det(&differences(&a, &[&b, &c, &d]));
-            let error = exact(orient3d_accurate(&a, &b, &c, &d)) - &expected;
-            let square = |x: &BigRational| x * x;
-            assert!(square(&error) <= square(&expected) * exact(1e-18), "{step}");
+            let [a, b, c, d] = [a, b, c, d].map(|p| p * unit);
+            assert_accurate([&a, &b, &c, &d]);
+        }
+    }
+
+    #[test]
+    fn orientations_with_one_long_edge_are_accurate() {
+        // The far point is opposite to the first one.
+        let [a, near, other, far] =
+            [[0.1, 0.2, 0.3], [0.11, 0.22, 0.31], [0.13, 0.19, 0.32], [-0.1, -0.2, -0.3]].map(Point3::from);
+        for step in 20..50 {
+            let off = super::super::Vec3::z() * libm::exp2(f64::from(step)).recip();
+            let d = a + 0.5 * (near - a) + 0.01 * (far - a) + off;
+            for [p, q, r] in [[&near, &far, &d], [&far, &near, &d], [&near, &d, &far]] {
+                assert_accurate([&a, p, q, r]);
+            }
+            assert_accurate([&a, &near, &other, &d]);
         }
     }
 
@@ -232,6 +253,20 @@ mod tests {
             let found = insphere(&p[0], &p[1], &p[2], &p[3], &p[4]);
             prop_assert_eq!(sign_f(found), insphere_oracle(&p));
             prop_assert_eq!(sign_f(insphere_exact(&p[0], &p[1], &p[2], &p[3], &p[4])), insphere_oracle(&p));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn points_of_a_line_are_collinear(
+            a in prop::array::uniform3(-9i32..9), way in prop::array::uniform3(-9i32..9), steps in [-5i32..5, -5i32..5],
+        ) {
+            let at = |step: i32| Point3::from([0, 1, 2].map(|i| 0.25 * f64::from(a[i] + step * way[i])));
+            let [a, b, c] = [at(0), at(steps[0]), at(steps[1])];
+            prop_assert!(collinear(&a, &b, &c));
+            let length = (b - a).norm();
+            let aside = c + (b - a).yzx() * 1e-12 / length;
+            prop_assert!(length == 0.0 || way.iter().all(|x| *x == way[0]) || !collinear(&a, &b, &aside));
         }
     }
 
