@@ -82,7 +82,8 @@ impl AtomicFile {
         Ok(())
     }
 
-    /// Flushes the file and moves it to its target, replacing an earlier file.
+    /// Flushes the file and moves it to its target, replacing an earlier file. [`OutputSet::place`](super::OutputSet::place) flushes
+    /// the new name, too.
     ///
     /// # Errors
     /// The operating system reports an error.

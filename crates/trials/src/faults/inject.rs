@@ -47,14 +47,10 @@ pub struct Call {
 
 /// Lets one call on a file of the run fail, and runs the job again.
 pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
-    if !has_strace() {
-        return Ok(skipped("strace is missing"));
-    }
-    let calls = calls(trial)?;
-    Job::prepare(trial.folder, trial.has_earlier.then_some(&trial.reference.earlier))?;
-    if calls.is_empty() {
-        return Ok(skipped("strace cannot trace"));
-    }
+    let calls = match calls(trial)? {
+        Ok(calls) => calls,
+        Err(skipped) => return Ok(skipped),
+    };
     // Kinds of calls are drawn first: most calls are writes.
     let mut names: Vec<&str> = calls.iter().map(|call| call.name.as_str()).collect();
     names.sort_unstable();
@@ -97,7 +93,7 @@ pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
 }
 
 /// True if strace is installed.
-pub fn has_strace() -> bool {
+fn has_strace() -> bool {
     let status = Command::new("strace").arg("-V").stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
 }
@@ -122,13 +118,19 @@ pub fn strace(trial: &Trial, log: &str) -> Command {
     command
 }
 
-/// Calls of an undisturbed run on files of the output and work folders.
-pub fn calls(trial: &Trial) -> io::Result<Vec<Call>> {
+/// Calls of an undisturbed run on files of the output and work folders, which are then as before. An error where strace cannot
+/// record them.
+pub fn calls(trial: &Trial) -> io::Result<Result<Vec<Call>, Judged>> {
+    if !has_strace() {
+        return Ok(Err(skipped("strace is missing")));
+    }
     let log = trial.folder.with_extension("strace");
     let mut command = strace(trial, &log.to_string_lossy());
     command.arg(trial.mesher).args(trial.job.arguments());
     run_command(command, trial.folder, LIMITS)?;
-    Ok(parse(&fs::read_to_string(log)?))
+    let calls = parse(&fs::read_to_string(log)?);
+    Job::prepare(trial.folder, trial.has_earlier.then_some(&trial.reference.earlier))?;
+    Ok(if calls.is_empty() { Err(skipped("strace cannot trace")) } else { Ok(calls) })
 }
 
 /// Calls in a log of strace whose text names the output or work folder.

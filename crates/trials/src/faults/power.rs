@@ -3,9 +3,9 @@
 //! A run is killed at a system call, and its calls are recorded by strace. Contents that were not flushed are then cut off or
 //! replaced by zeros. The last changes of names that were not flushed are undone, as a journal of the file system would do.
 
-use super::inject::{calls, has_strace, strace};
+use super::inject::{calls, strace};
 use super::jobs::{Files, Job, LIMITS};
-use super::trial::{Place, Trial, finding, place, skipped};
+use super::trial::{Place, Trial, finding, place};
 use crate::judge::{Judged, Outcome};
 use crate::process::{Ended, run_command};
 use crate::random::Random;
@@ -19,14 +19,10 @@ const PAGE: u64 = 4096;
 
 /// Loses power at a random call of a run, or after it, and runs the job again.
 pub fn judge(trial: &Trial, random: &mut Random) -> io::Result<Judged> {
-    if !has_strace() {
-        return Ok(skipped("strace is missing"));
-    }
-    let calls = calls(trial)?;
-    Job::prepare(trial.folder, trial.has_earlier.then_some(&trial.reference.earlier))?;
-    if calls.is_empty() {
-        return Ok(skipped("strace cannot trace"));
-    }
+    let calls = match calls(trial)? {
+        Ok(calls) => calls,
+        Err(skipped) => return Ok(skipped),
+    };
     let log = trial.folder.with_extension("power");
     let mut command = strace(trial, &log.to_string_lossy());
     if random.chance(0.75) {
@@ -175,12 +171,12 @@ impl<'a> Disk<'a> {
     }
 
     fn rename(&mut self, [from, to]: [String; 2], is_exchange: bool) {
-        let mut moved = self.take(&from);
+        let moved = self.take(&from);
         if is_exchange {
             let back = self.take(&to);
             self.files.extend(back.into_iter().map(|(rest, file)| (format!("{from}{rest}"), file)));
         }
-        self.files.extend(std::mem::take(&mut moved).into_iter().map(|(rest, file)| (format!("{to}{rest}"), file)));
+        self.files.extend(moved.into_iter().map(|(rest, file)| (format!("{to}{rest}"), file)));
         self.changes.push(if is_exchange { Change::Swapped([from, to]) } else { Change::Moved([from, to]) });
     }
 
