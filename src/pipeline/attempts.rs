@@ -4,6 +4,7 @@ use super::block_budget::BlockBudget;
 use super::effort::Effort;
 use super::once::{self, Connector};
 use super::plan::{JointStyle, MeshPlan};
+use super::routes::Tangle;
 use super::tips;
 use crate::block::{BlockError, BlockParams, ConnectorEnd, DIVISIONS, EndStyle, Finished};
 use crate::partition::{Cluster, ClusterId, Cut, CutId};
@@ -41,13 +42,15 @@ pub enum RetryStrategy {
     FinerShifted,
     /// `Narrower`, with smaller voxels.
     FinerNarrower,
-    /// With the smallest voxels and the thinnest kernel.
+    /// With much smaller voxels and a thin kernel.
     Finest,
+    /// With the smallest voxels and the thinnest kernel, for vessels that almost meet. Those that overlap would still fuse.
+    Narrowest,
 }
 
 impl RetryStrategy {
     /// All, in the order in which they are tried.
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Usual,
         Self::Shifted,
         Self::Narrower,
@@ -56,6 +59,7 @@ impl RetryStrategy {
         Self::FinerShifted,
         Self::FinerNarrower,
         Self::Finest,
+        Self::Narrowest,
     ];
 
     /// Those that begin a new try at a cluster whose wall meets that of another.
@@ -72,6 +76,7 @@ impl RetryStrategy {
             Self::FinerShifted => "finer voxel, grid shifted",
             Self::FinerNarrower => "finer voxel, narrower kernel",
             Self::Finest => "much finer voxel, thin kernel",
+            Self::Narrowest => "finest voxel, thinnest kernel",
         }
     }
 
@@ -97,6 +102,7 @@ impl RetryStrategy {
             Self::FinerShifted => finer(shifted),
             Self::FinerNarrower => finer(narrower),
             Self::Finest => BlockParams { kappa: 0.2, voxel_factor: 0.5, ..shifted },
+            Self::Narrowest => BlockParams { kappa: 0.15, voxel_factor: 0.3, ..shifted },
         }
     }
 }
@@ -108,20 +114,22 @@ struct BlockAttempt {
     params: BlockParams,
 }
 
-/// Attempts at a cluster. `overlapping`: vessels of the network overlap in it, or are so close that their tubes may.
-/// `first`: first strategy to try.
+/// Attempts at a cluster. `first`: first strategy to try.
 ///
 /// If neither another grid nor a finer one with a narrower kernel gives a block, narrow gaps between vessels are closed. If that
-/// fails, too, vessels that overlap are fused. With `plan.fuse`, they are fused at once.
-fn attempts(plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Vec<BlockAttempt> {
-    let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first);
-    let apart = ways().filter(|way| !overlapping || (!plan.fuse && way.may_part()));
+/// fails, too, vessels that overlap or meet are fused. With `plan.fuse`, they are fused at once.
+fn attempts(plan: &MeshPlan, tangle: Tangle, first: RetryStrategy) -> Vec<BlockAttempt> {
+    let tangled = tangle != Tangle::Free;
+    let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first && way != RetryStrategy::Narrowest);
+    let apart = ways().filter(|way| !tangled || (!plan.fuse && way.may_part()));
+    let may_part = tangle != Tangle::Overlapping && !(tangled && plan.fuse);
+    let apart = apart.chain(may_part.then_some(RetryStrategy::Narrowest));
     let apart = apart.map(|way| BlockAttempt { name: way.name().into(), params: way.params(plan) });
-    let closed = ways().filter(|way| way.may_part() && !(overlapping && plan.fuse)).map(|way| BlockAttempt {
+    let closed = ways().filter(|way| way.may_part() && !(tangled && plan.fuse)).map(|way| BlockAttempt {
         name: format!("narrow gaps closed, {}", way.name()),
         params: BlockParams { close_gaps: true, ..way.params(plan) },
     });
-    let fused = ways().filter(|_| overlapping).map(|way| BlockAttempt {
+    let fused = ways().filter(|_| tangled).map(|way| BlockAttempt {
         name: format!("vessels that overlap taken as one, {}", way.name()),
         params: BlockParams { allow_fused: true, ..way.params(plan) },
     });
@@ -279,14 +287,14 @@ fn first_good(
 
 /// Meshes a cluster.
 ///
-/// - `overlapping`: vessels of the network overlap in it
+/// - `tangle`: how close its vessels come to each other
 /// - `first`: first strategy to try
 /// - `original`: number of a terminal in the network as it was read
 pub fn cluster(
     id: ClusterId,
     cluster: &Cluster,
     (plan, effort): (&MeshPlan, Effort),
-    (overlapping, first): (bool, RetryStrategy),
+    (tangle, first): (Tangle, RetryStrategy),
     original: impl Fn(NodeId) -> u32,
     watch: &Watch,
 ) -> Tried {
@@ -296,7 +304,7 @@ pub fn cluster(
         let make = |params: &BlockParams| {
             budget.attempt(cluster, params, |watch| once::cluster(id, cluster, params, &original, watch))
         };
-        first_good(&name, attempts(plan, overlapping, first), (budget.is_large, || budget.is_over()), make)
+        first_good(&name, attempts(plan, tangle, first), (budget.is_large, || budget.is_over()), make)
     };
     let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
@@ -527,25 +535,29 @@ mod tests {
 
     #[test]
     fn vessels_that_may_overlap_are_kept_apart_if_they_can_be() {
-        let fused = |plan: &MeshPlan, overlapping| -> Vec<bool> {
-            attempts(plan, overlapping, RetryStrategy::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
+        let fused = |plan: &MeshPlan, tangle| -> Vec<bool> {
+            attempts(plan, tangle, RetryStrategy::Usual).iter().map(|attempt| attempt.params.allow_fused).collect()
         };
         let plan = MeshPlan::default();
-        assert_eq!(fused(&plan, false), [false; RetryStrategy::ALL.len() + 5]);
-        assert_eq!(
-            fused(&plan, true),
-            [[false; 5].as_slice(), &[false; 5], &[true; RetryStrategy::ALL.len()]].concat()
-        );
-        assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, true), [true; RetryStrategy::ALL.len()]);
-        let names: Vec<String> =
-            attempts(&plan, true, RetryStrategy::Usual).into_iter().map(|attempt| attempt.name).collect();
+        let all = RetryStrategy::ALL.len();
+        assert_eq!(fused(&plan, Tangle::Free), vec![false; all + 5]);
+        let overlapping = [vec![false; 10], vec![true; all - 1]].concat();
+        assert_eq!(fused(&plan, Tangle::Overlapping), overlapping);
+        assert_eq!(fused(&plan, Tangle::Meeting), [&[false], &overlapping[..]].concat());
+        for tangle in [Tangle::Meeting, Tangle::Overlapping] {
+            assert_eq!(fused(&MeshPlan { fuse: true, ..plan.clone() }, tangle), vec![true; all - 1]);
+        }
+        let names: Vec<String> = attempts(&plan, Tangle::Overlapping, RetryStrategy::Usual)
+            .into_iter()
+            .map(|attempt| attempt.name)
+            .collect();
         assert_eq!(names[3], "finer voxel, narrower kernel");
         assert_eq!(names[5], "narrow gaps closed, as usual");
         assert_eq!(names[10], "vessels that overlap taken as one, as usual");
         assert!(RetryStrategy::ALL.is_sorted());
         for first in RetryStrategy::APART {
-            assert_eq!(attempts(&plan, false, first)[0].name, first.name());
-            assert!(attempts(&plan, true, first).iter().any(|attempt| !attempt.params.allow_fused));
+            assert_eq!(attempts(&plan, Tangle::Free, first)[0].name, first.name());
+            assert!(attempts(&plan, Tangle::Overlapping, first).iter().any(|attempt| !attempt.params.allow_fused));
         }
     }
 }

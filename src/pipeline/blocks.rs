@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::make::BlockResult;
 use super::report::Retry;
+use super::routes::Tangle;
 use super::store::RecordId;
 use super::timing::BlockTimes;
 use crate::block::Cured;
@@ -23,8 +24,8 @@ pub type Meetings = Vec<[u32; 2]>;
 pub struct Blocks {
     /// Partition that they belong to.
     pub partition: Layout,
-    /// True for each cluster with overlapping vessels.
-    pub tangled: Vec<bool>,
+    /// Tangle of each cluster.
+    pub tangled: Vec<Tangle>,
     /// By `ClusterId`; an error for a cluster without a successful attempt.
     pub clusters: Vec<BlockResult>,
     /// By `CutId`; none beside a failed cluster.

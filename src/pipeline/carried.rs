@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::blocks::Blocks;
 use super::make::BlockResult;
+use super::routes::Tangle;
 use super::store::RecordId;
 use super::timing::BlockTimes;
 use crate::block::Cured;
@@ -21,7 +22,7 @@ pub(super) struct Carried {
 impl Carried {
     /// Those of `before` that are made from the same in `partition`: the store would find them by the same keys. `woven`:
     /// connectors are made from the ends of their clusters.
-    pub(super) fn over(before: Option<Blocks>, partition: &Layout, tangled: &[bool], woven: bool) -> Self {
+    pub(super) fn over(before: Option<Blocks>, partition: &Layout, tangled: &[Tangle], woven: bool) -> Self {
         let none = |count: usize| (0..count).map(|_| None).collect();
         let Some(mut before) = before else {
             let (clusters, connectors) = (none(partition.clusters_len()), none(partition.cuts_len()));

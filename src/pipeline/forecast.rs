@@ -4,7 +4,7 @@ use super::cures::partition_params;
 use super::error::RunError;
 use super::estimate::{Estimate, cluster_cost};
 use super::plan::MeshPlan;
-use super::routes::tangled_clusters;
+use super::routes::{Tangle, tangled_clusters};
 use crate::partition;
 use anastomesh_network::split_in_place;
 use anastomesh_skeleton::Skeleton;
@@ -52,10 +52,10 @@ impl Forecast {
         let partition = partition::lay_out(&network, &params, &())?.sized(plan.size_at.clone());
         let overlaps = network.overlaps(&network.adjacency());
         let tangled = tangled_clusters(&network, &partition, &overlaps);
-        let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled);
+        let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled != Tangle::Free);
         let again: f64 = again.map(|(cluster, _)| cluster_cost(&cluster, plan).operations).sum();
         Ok(Self {
-            overlapping: tangled.iter().filter(|tangled| **tangled).count(),
+            overlapping: tangled.iter().filter(|tangled| **tangled != Tangle::Free).count(),
             retry_operations: (ATTEMPTS - 1.0) * again,
             clusters: partition.clusters_len(),
             connectors: partition.cuts_len(),

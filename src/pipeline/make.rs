@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::attempts::{self, RetryStrategy, Tried};
 use super::effort::Effort;
 use super::plan::{JointStyle, MeshPlan};
+use super::routes::Tangle;
 use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
 use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, ForkCell, Layout};
@@ -48,7 +49,7 @@ impl<'a> Workshop<'a> {
 }
 
 impl Workshop<'_> {
-    /// Makes a cluster. `overlapping`: vessels of the network overlap in it. `first`: first strategy to try.
+    /// Makes a cluster. `first`: first strategy to try.
     ///
     /// # Errors
     /// The store fails. A failed block is not an error here.
@@ -56,17 +57,17 @@ impl Workshop<'_> {
         &self,
         id: ClusterId,
         cluster: &Cluster,
-        overlapping: bool,
+        tangle: Tangle,
         first: RetryStrategy,
         watch: &Watch,
     ) -> Result<BlockResult, StoreError> {
         let plan = &*self.plan.of_tube(cluster.size);
-        let key = cluster_key(cluster, plan, overlapping, first);
+        let key = cluster_key(cluster, plan, tangle, first);
         if let Some(kept) = self.found(key)? {
             return Ok(Ok(kept));
         }
         let original = |node| self.skeleton.node(node).original;
-        let tried = attempts::cluster(id, cluster, (plan, self.effort), (overlapping, first), original, watch);
+        let tried = attempts::cluster(id, cluster, (plan, self.effort), (tangle, first), original, watch);
         if tried.result.is_err() {
             self.store.ledger().add(tried.spent);
         }
@@ -183,10 +184,10 @@ fn options(key: &mut KeyMaker, plan: &MeshPlan) {
     });
 }
 
-fn cluster_key(cluster: &Cluster, plan: &MeshPlan, overlapping: bool, first: RetryStrategy) -> Key {
+fn cluster_key(cluster: &Cluster, plan: &MeshPlan, tangle: Tangle, first: RetryStrategy) -> Key {
     let mut key = KeyMaker::new("cluster");
     options(&mut key, plan);
-    key.id(u32::from(overlapping));
+    key.id(tangle as u32);
     key.id(u32::from(plan.fuse));
     key.text(first.name());
     key.count(cluster.tubes.len());
@@ -247,7 +248,7 @@ mod tests {
     #[test]
     fn a_cluster_is_found_only_by_all_that_it_depends_on() {
         let (cluster, plan) = (Cluster::default(), MeshPlan::default());
-        let plain = cluster_key(&cluster, &plan, true, RetryStrategy::Usual);
+        let plain = cluster_key(&cluster, &plan, Tangle::Overlapping, RetryStrategy::Usual);
         let others = [
             MeshPlan { rho: 4.0, ..plan.clone() },
             MeshPlan { follow: 0.5, ..plan.clone() },
@@ -261,20 +262,27 @@ mod tests {
             MeshPlan { unfolded: true, ..plan.clone() },
         ];
         for other in others {
-            assert_ne!(cluster_key(&cluster, &other, true, RetryStrategy::Usual), plain, "{other:?}");
+            assert_ne!(cluster_key(&cluster, &other, Tangle::Overlapping, RetryStrategy::Usual), plain, "{other:?}");
         }
-        assert_ne!(cluster_key(&cluster, &plan, false, RetryStrategy::Usual), plain);
-        assert_ne!(cluster_key(&cluster, &plan, true, RetryStrategy::Finest), plain);
-        assert_eq!(cluster_key(&cluster, &plan, true, RetryStrategy::Usual), plain);
+        for tangle in [Tangle::Free, Tangle::Meeting] {
+            assert_ne!(cluster_key(&cluster, &plan, tangle, RetryStrategy::Usual), plain);
+        }
+        assert_ne!(cluster_key(&cluster, &plan, Tangle::Overlapping, RetryStrategy::Finest), plain);
+        assert_eq!(cluster_key(&cluster, &plan, Tangle::Overlapping, RetryStrategy::Usual), plain);
         // What is asked for of forks counts where there is one, and what tubes are stretched by once it is known.
         let asked = MeshPlan { size_at: Some(SizeAt::Forks(0.5)), ..plan.clone() };
-        assert_eq!(cluster_key(&cluster, &asked, true, RetryStrategy::Usual), plain);
+        assert_eq!(cluster_key(&cluster, &asked, Tangle::Overlapping, RetryStrategy::Usual), plain);
         let forked = |factor| {
             let fork = FinePlace { at: anastomesh_mesh::geometry::Point3::origin(), within: 1.0, factor };
-            cluster_key(&Cluster { fine: vec![fork], ..cluster.clone() }, &asked, true, RetryStrategy::Usual)
+            cluster_key(
+                &Cluster { fine: vec![fork], ..cluster.clone() },
+                &asked,
+                Tangle::Overlapping,
+                RetryStrategy::Usual,
+            )
         };
         assert!(forked(0.5) != plain && forked(0.5) != forked(0.4));
-        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), true, RetryStrategy::Usual);
+        let stretched = |size| cluster_key(&cluster, &asked.of_tube(size), Tangle::Overlapping, RetryStrategy::Usual);
         assert!(stretched(Some(2.0)) != plain && stretched(Some(2.0)) != stretched(Some(3.0)));
         assert_eq!([None, Some(0.3), Some(1.0)].map(stretched), [plain; 3]);
         assert_eq!(stretched(Some(90.0)), stretched(Some(MOST_STRETCH)));

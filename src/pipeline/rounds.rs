@@ -18,7 +18,7 @@ use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::{BlockResult, Workshop};
 use super::plan::JointStyle;
 use super::report::Retry;
-use super::routes::{branch_pairs, tangled_clusters};
+use super::routes::{Tangle, branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::sizes;
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
@@ -246,7 +246,7 @@ impl RunContext<'_> {
 struct Making<'a> {
     shop: Workshop<'a>,
     partition: &'a Layout,
-    tangled: &'a [bool],
+    tangled: &'a [Tangle],
     watch: Watch<'a>,
     stopwatch: Stopwatch,
     /// Strategies that helped failed blocks.

@@ -2,6 +2,7 @@
 
 use crate::partition::{CutId, Layout};
 use anastomesh_skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
+use serde::{Deserialize, Serialize};
 
 /// The branches of pairs of edges: each pair once, the lower branch first, ascending.
 pub fn branch_pairs(skeleton: &Skeleton, edges: impl Iterator<Item = [EdgeId; 2]>) -> Vec<[BranchId; 2]> {
@@ -32,22 +33,34 @@ fn routes(partition: &Layout) -> Vec<(BranchId, u32)> {
     routes
 }
 
-/// For each cluster, whether two vessels overlap, or meet at all, whose branches both run through it.
-pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Overlaps) -> Vec<bool> {
-    let mut tangled = vec![false; partition.clusters_len()];
-    let edges = overlaps.pairs.iter().map(|o| o.edges).chain(overlaps.unconnected.iter().copied());
-    let pairs = branch_pairs(skeleton, edges);
-    if pairs.is_empty() {
+/// How close vessels of a cluster come to each other, apart from bifurcations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Tangle {
+    /// No two vessels meet.
+    Free,
+    /// Edges meet that have no common node, but no vessels overlap.
+    Meeting,
+    /// Two vessels overlap.
+    Overlapping,
+}
+
+/// Tangle of each cluster: that of vessels whose branches both run through it.
+pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Overlaps) -> Vec<Tangle> {
+    let mut tangled = vec![Tangle::Free; partition.clusters_len()];
+    let meeting = branch_pairs(skeleton, overlaps.unconnected.iter().copied());
+    let overlapping = branch_pairs(skeleton, overlaps.pairs.iter().map(|o| o.edges));
+    if meeting.is_empty() && overlapping.is_empty() {
         return tangled;
     }
     let routes = routes(partition);
-    for [a, b] in pairs {
+    let all = [(Tangle::Meeting, meeting), (Tangle::Overlapping, overlapping)];
+    for (tangle, [a, b]) in all.iter().flat_map(|(tangle, pairs)| pairs.iter().map(move |pair| (*tangle, *pair))) {
         let first = routes.partition_point(|(branch, _)| *branch < a);
         for &(_, block) in routes[first..].iter().take_while(|(branch, _)| *branch == a) {
             if routes.binary_search(&(b, block)).is_ok()
                 && let Some(tangled) = tangled.get_mut(block as usize)
             {
-                *tangled = true;
+                *tangled = tangle;
             }
         }
     }

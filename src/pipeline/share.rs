@@ -13,7 +13,7 @@ use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
 use super::make::Workshop;
 use super::plan::MeshPlan;
 use super::rounds::RunContext;
-use super::routes::tangled_clusters;
+use super::routes::{Tangle, tangled_clusters};
 use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
@@ -73,8 +73,8 @@ pub fn make_share(
 struct Tasks {
     /// Branches that are to be in one cluster.
     together: BTreeSet<[BranchId; 2]>,
-    /// Of each cluster, whether vessels overlap in it.
-    tangled: Vec<bool>,
+    /// Tangle of each cluster.
+    tangled: Vec<Tangle>,
     /// Cost of each block: clusters by their ids, then connectors.
     weights: Vec<u64>,
     estimate: Estimate,

@@ -1,6 +1,7 @@
 //! The way through all stages, and what happens when a block fails.
 
 use super::effort::Effort;
+use super::routes::Tangle;
 use super::*;
 use crate::block::{Finished, Record, encode};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
@@ -153,7 +154,7 @@ fn finished(network: &Skeleton, plan: &MeshPlan) -> Vec<Finished> {
             ClusterId(i as u32),
             cluster,
             (plan, Effort::full(1)),
-            (false, attempts::RetryStrategy::Usual),
+            (Tangle::Free, attempts::RetryStrategy::Usual),
             |node| node.0,
             &anastomesh_tet::parts::Watch::NOBODY,
         )

@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
 const MAX_RETRACTIONS: usize = 4;
 
+/// Maximum retractions of one terminal. One that is still open then lies in a vessel, and further ones do not help.
+const RETRACTIONS_OF_TIP: usize = 2;
+
 /// Relative volume error of a refined network above which it is meshed without refinement. Applies if only vessels of one
 /// branch point overlap.
 const MAX_VOLUME_ERROR: f64 = 0.05;
@@ -390,10 +393,12 @@ impl<'a> Meshing<'a, '_> {
     /// Meshes a network, and again as long as terminals that could not be capped can be retracted.
     fn attempt(&mut self, mut strategy: Strategy, mut networks: Networks) -> Outcome<'a> {
         let mut retractions = 0;
+        let mut retracted: Vec<u32> = Vec::new();
         loop {
             let made = mesh_shared(self.store, &networks.network, self.plan, self.fits, self.progress);
             let told = if retractions < MAX_RETRACTIONS && self.retracts && !self.store.is_hopeless() {
-                let tips = self.open_tips(&made, networks.prepare.measured);
+                let mut tips = self.open_tips(&made, networks.prepare.measured);
+                tips.retain(|tip| retracted.iter().filter(|before| *before == tip).count() < RETRACTIONS_OF_TIP);
                 networks.retract(&tips)
             } else {
                 Vec::new()
@@ -405,6 +410,7 @@ impl<'a> Meshing<'a, '_> {
             self.attempts.push(Attempt { strategy, fault });
             let name = |node| networks.names.of(NodeId(node));
             touching_text(&told, &name).lines().for_each(|line| self.progress.note(line));
+            retracted.extend(told.iter().map(|touching| touching.tip));
             strategy = Strategy::RetractedTips;
             retractions += 1;
         }

@@ -33,9 +33,14 @@ const FAMILIES: [(&str, &str, &str); 7] = [
 /// Messages of a kind on the page. The state file has more.
 const MESSAGES: usize = 4;
 
+/// Minimum number of a kind's last cases. Whole builds are counted, from the newest on.
+const LAST: u64 = 30;
+
 /// Sum of the batches of a kind.
 #[derive(Clone, Debug, Default)]
 struct Sum {
+    /// Numbers of the last cases, and of the valid ones among them with those beyond a limit.
+    last: [u64; 2],
     count: u64,
     valid: u64,
     valid_by_one: u64,
@@ -46,6 +51,18 @@ struct Sum {
 }
 
 impl Sum {
+    /// Sum of the batches of a kind, the newest first.
+    fn of(batches: &[&Batch]) -> Self {
+        let mut sum = Self::default();
+        for batch in batches {
+            sum.add(batch);
+            if sum.last[0] < LAST {
+                sum.last = [sum.count, sum.valid + sum.valid_by_one + sum.not_faithful()];
+            }
+        }
+        sum
+    }
+
     fn add(&mut self, batch: &Batch) {
         self.count += batch.count;
         self.valid += batch.valid;
@@ -95,8 +112,11 @@ pub fn write(state: &Path, page: &Path) -> io::Result<()> {
 
 /// Text of the page.
 fn text(batches: &[Batch], figures: &[Value]) -> String {
-    let mut kinds: BTreeMap<&str, Sum> = BTreeMap::new();
-    batches.iter().filter(|batch| !batch.repeats).for_each(|batch| kinds.entry(&batch.kind).or_default().add(batch));
+    let mut kinds: BTreeMap<&str, Vec<&Batch>> = BTreeMap::new();
+    for batch in batches.iter().filter(|batch| !batch.repeats).rev() {
+        kinds.entry(&batch.kind).or_default().push(batch);
+    }
+    let kinds: BTreeMap<&str, Sum> = kinds.into_iter().map(|(kind, batches)| (kind, Sum::of(&batches))).collect();
     let mut out = head(batches);
     out += &families(&kinds);
     for (family, title, note) in FAMILIES {
@@ -134,7 +154,7 @@ target/release/anastomesh-trials page                                  # this pa
 ```
 
 `.ci/long` runs these commands. A kind that was tried n times has the seeds 0 to n - 1, and `--state FILE` with a new file begins
-again at 0. Results are kept in [trust.jsonl](trust.jsonl), with a line for each kind and build. Figures are sums over all builds.
+again at 0. Results are kept in [trust.jsonl](trust.jsonl), with a line for each kind and build.
 
 Runs from {first} to {last}. Builds: {}.
 
@@ -148,6 +168,9 @@ Each case ends in one of four ways:
 - **Refused**: a documented exit code with a message, and no file at the output.
 - **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
   Limits grow with inputs of more than 2,000 edges, triangles or lines.
+
+Figures are sums over all builds, but for one column: *of the last, %* has the share of valid meshes and of those beyond a limit with
+the newest builds. They are as few as have at least {LAST} cases of a kind. Their number is in brackets.
 
 A mesh is wrong and called valid if the program calls it valid and at least one checker does not. N is the number of valid meshes that both
 checkers read. If none is wrong, the share of wrong ones is below 3/N with 95 % confidence, for input like that of the trials. Times are
@@ -168,8 +191,8 @@ fn builds(version: &str) -> Vec<String> {
 
 fn families(kinds: &BTreeMap<&str, Sum>) -> String {
     let mut out = String::from(
-        "## Summary\n\n| family | tried | valid | valid, % | beyond a limit | valid or beyond, % | called not valid | refused | findings | wrong, called valid | bound 3/N | worst time, s |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "## Summary\n\n| family | tried | valid | valid, % | beyond a limit | valid or beyond, % | of the last, % | called not valid | refused | findings | wrong, called valid | bound 3/N | worst time, s |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (family, title, _) in FAMILIES {
         let own: Vec<&Sum> = of_family(kinds, family).map(|(_, sum)| sum).collect();
@@ -182,12 +205,13 @@ fn families(kinds: &BTreeMap<&str, Sum>) -> String {
         let worst = own.iter().map(|s| s.worst).fold(0.0, f64::max);
         let _ = writeln!(
             out,
-            "| {title} | {} | {} | {:.1} | {} | {:.1} | {} | {} | {} | {wrong} | {} | {worst:.1} |",
+            "| {title} | {} | {} | {:.1} | {} | {:.1} | {} | {} | {} | {} | {wrong} | {} | {worst:.1} |",
             grouped(count),
             grouped(valid),
             percent(valid, count),
             grouped(beyond),
             percent(valid + beyond, count),
+            share([0, 1].map(|i| sum(&|s| s.last[i]))),
             grouped(sum(&|s| s.not_valid())),
             grouped(sum(&|s| s.refused())),
             sum(&|s| s.findings.len() as u64),
@@ -200,20 +224,21 @@ fn families(kinds: &BTreeMap<&str, Sum>) -> String {
 fn table(family: &str, title: &str, note: &str, own: &[(&str, &Sum)]) -> String {
     let mut out = format!(
         "## {title}\n\n{note}\n\nCommand: `target/release/anastomesh-trials run --minutes 5 --only {family}/`\n\n\
-         | kind | tried | valid | valid, % | beyond a limit | valid or beyond, % | called not valid | refused | findings | bound 3/N | worst time, s (seed) |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n"
+         | kind | tried | valid | valid, % | beyond a limit | valid or beyond, % | of the last, % | called not valid | refused | findings | bound 3/N | worst time, s (seed) |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
     for (kind, sum) in own {
         let valid = sum.valid + sum.valid_by_one;
         let by_one = if sum.valid_by_one > 0 { format!(" ({})", grouped(sum.valid_by_one)) } else { String::new() };
         let _ = writeln!(
             out,
-            "| {kind} | {} | {}{by_one} | {:.1} | {} | {:.1} | {} | {} | {} | {} | {:.1} ({}) |",
+            "| {kind} | {} | {}{by_one} | {:.1} | {} | {:.1} | {} | {} | {} | {} | {} | {:.1} ({}) |",
             grouped(sum.count),
             grouped(valid),
             percent(valid, sum.count),
             grouped(sum.not_faithful()),
             percent(valid + sum.not_faithful(), sum.count),
+            share(sum.last),
             grouped(sum.not_valid()),
             grouped(sum.refused()),
             sum.findings.len(),
@@ -225,6 +250,11 @@ fn table(family: &str, title: &str, note: &str, own: &[(&str, &Sum)]) -> String 
     out += "\n| kind | exit code | message | cases |\n|---|---|---|---|\n";
     out.extend(own.iter().map(|(kind, sum)| messages(kind, sum)));
     out + "\n"
+}
+
+/// Share of valid cases and of those beyond a limit among the last ones, with the number of these.
+fn share([count, good]: [u64; 2]) -> String {
+    format!("{:.1} ({})", percent(good, count), grouped(count))
 }
 
 /// Rows of the most frequent messages of a kind, and of the others together.
@@ -287,7 +317,10 @@ mod tests {
         let gone = Batch { findings: Vec::new(), ..gone };
         let fuzz = serde_json::json!({"figure": "fuzz", "part": "off", "executions": 7});
         let page = text(&[batch, gone], &[fuzz]);
-        assert!(page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 99.4 | 0 | 9 | 1 | 2.5e-3 | 0.0 (0) |"), "{page}");
+        assert!(
+            page.contains("| star | 1,200 | 1,190 | 99.2 | 3 | 99.4 | 99.4 (1,200) | 0 | 9 | 1 | 2.5e-3 | 0.0 (0) |"),
+            "{page}"
+        );
         assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
         assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |\n\n## Fuzzing\n"), "{page}");
     }
@@ -304,7 +337,7 @@ mod tests {
             [("3: x", 9), ("1: NOT valid: other messages", 5), (": other messages", 4), ("1: other messages", 2)];
         batch.typed.extend(counts.map(|(message, count)| (message.to_owned(), count)));
         let page = text(&[Batch { version: "program build b".into(), count: 0, ..batch.clone() }, batch], &[]);
-        assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 10.0 | 10 | 26 | 0 | – | 0.0 (0) |"), "{page}");
+        assert!(page.contains("| star | 40 | 0 | 0.0 | 4 | 10.0 | 5.0 (40) | 10 | 26 | 0 | – | 0.0 (0) |"), "{page}");
         assert!(page.contains("| star | 3 | `x` | 18 |\n| star | | other messages | 22 |\n\n"), "{page}");
         assert!(page.contains("Builds: `program build a`, `program build b`."), "{page}");
     }
