@@ -30,7 +30,7 @@ fn measure(path: &Path) {
     let (network, _) = clean(&file.skeleton).expect("a sound network");
     let params = PartitionParams { cut_terminals: true, ..PartitionParams::default() };
     let mut clusters = partition(&network, &params).expect("a partition").clusters;
-    let cells = shared_cells(clusters.len() as u32, |i| clusters[i as usize].clone());
+    let cells = shared_cells(clusters.len() as u32, 1.0, |i| clusters[i as usize].clone());
     (0..).zip(&mut clusters).for_each(|(i, cluster)| cluster.cells = cells.of(i));
     // Canonical forks are kept for a while, so forks of one follow each other.
     clusters.sort_by_key(template_of);

@@ -115,7 +115,7 @@ impl RunContext<'_> {
         let kept = || {
             let layout = store.once(("partition", key), progress, cut)?.of(Arc::clone(skeleton));
             let layout = layout.sized(plan.size_at.clone());
-            let cells = shared_cells(layout.clusters_len() as u32, |i| layout.cluster(ClusterId(i)));
+            let cells = shared_cells(layout.clusters_len() as u32, plan.stretch, |i| layout.cluster(ClusterId(i)));
             Ok(layout.with_cells(cells))
         };
         self.clock.time(progress, Stage::Partition, 0, kept)

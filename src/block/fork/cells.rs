@@ -1,5 +1,6 @@
 //! Choice of the cells that have a canonical fork, and of those near each fork of a network.
 
+use super::image;
 use super::shape::{Fork, Shape};
 use crate::partition::{Cluster, ForkCell, ForkCells};
 use rayon::prelude::*;
@@ -19,10 +20,11 @@ const FAR: f32 = 1.8;
 const CANDIDATES: usize = 256;
 
 /// Cells of the clusters of a network. Cells that many forks are in are chosen, then cells that forks far from all of these are
-/// close to.
-pub fn shared_cells(count: u32, cluster: impl Fn(u32) -> Cluster + Sync) -> ForkCells {
+/// close to. `stretch`: that of tubes.
+pub fn shared_cells(count: u32, stretch: f64, cluster: impl Fn(u32) -> Cluster + Sync) -> ForkCells {
+    let stretch = image::stretch(stretch);
     let shape = |i| {
-        let shape = Fork::of(&cluster(i))?.shape()?;
+        let shape = Fork::of(&cluster(i))?.shape(stretch)?;
         Some((i, shape, shape.cell()?))
     };
     let shapes: Vec<(u32, Shape, ForkCell)> = (0..count).into_par_iter().filter_map(shape).collect();

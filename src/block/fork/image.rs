@@ -26,6 +26,8 @@ const FREE: f64 = 1.25;
 const STEPS: usize = 6;
 const OFF_LEVEL: f64 = 2e-3;
 const FAR: f64 = 0.5;
+/// Maximum stretch. With a larger one, more images have poor tetrahedra in the crotch, and few are saved.
+const STRETCH: f64 = 1.25;
 /// Minimum radius ratio of an image's tetrahedra, and their minimum dihedral angle in degrees.
 const LEAST: f64 = 0.3;
 const LEAST_ANGLE: f64 = 16.0;
@@ -36,6 +38,11 @@ const MENDED_ANGLE: f64 = 13.0;
 const MENDABLE: f64 = 0.01;
 /// Tetrahedra with a larger radius ratio have larger angles.
 const ANGULAR: f64 = 0.6;
+
+/// Stretch of images, for one of tubes: that of the lengths of vessels from a canonical fork to an image.
+pub fn stretch(of_tubes: f64) -> f64 {
+    of_tubes.clamp(1.0, STRETCH)
+}
 
 /// Fork or bend filled with tetrahedra.
 pub struct FilledFork {
@@ -87,7 +94,8 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let tets = canonical.tets.iter().map(|t| t.map(u32::from)).collect();
     let (mut mesh, wall) = (TetMesh { points, tets }, canonical.wall.clone());
-    if is_above(&mesh, LEAST, LEAST_ANGLE) {
+    let stretch = stretch(params.stretch);
+    if is_above(&mesh, LEAST / stretch, LEAST_ANGLE / stretch) {
         // Limb of each end.
         let mut order: Vec<usize> = (0..discs.len()).collect();
         order.sort_by_key(|&limb| fork.limbs[limb].end);
@@ -99,7 +107,7 @@ pub fn image(canonical: &Canonical, fork: &Fork, cluster: &Cluster, params: &Blo
     }
     let options = OptimizeOptions { fixed_points: canonical.boundary_points, ..OptimizeOptions::of(Effort::Fast) };
     optimize(&mut mesh, &options).ok()?;
-    if !is_above(&mesh, MENDED, MENDED_ANGLE) {
+    if !is_above(&mesh, MENDED / stretch, MENDED_ANGLE / stretch) {
         return None;
     }
     let topology = Topology::of(&mesh, discs.iter().map(Vec::as_slice)).ok()?;

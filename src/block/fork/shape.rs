@@ -156,8 +156,8 @@ impl Fork {
     }
 
     /// Shape, with its coordinates in steps of a cell: height and two azimuths, then radius at the node, taper and length of each
-    /// vessel.
-    pub fn shape(&self) -> Option<Shape> {
+    /// vessel. Lengths are divided by `stretch`.
+    pub fn shape(&self, stretch: f64) -> Option<Shape> {
         let normal = self.normal()?;
         let across = |limb: &Limb| limb.axis - normal * normal.dot(&limb.axis);
         let first = across(&self.limbs[0]);
@@ -172,7 +172,7 @@ impl Fork {
             *place = azimuth(limb);
         }
         for (limb, places) in self.limbs.iter().zip(places[3..].chunks_mut(3)) {
-            let length = libm::log(limb.length / (USUAL_LENGTH * limb.radii[1])) / LENGTH;
+            let length = libm::log(limb.length / (stretch * USUAL_LENGTH * limb.radii[1])) / LENGTH;
             let [near, far] = limb.radii;
             places.copy_from_slice(&[radius([near, self.radius]), radius([far, near]), length]);
         }

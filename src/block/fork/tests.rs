@@ -34,7 +34,7 @@ fn cluster<const N: usize>(node: Point3, turn: Rotation3<f64>, rise: f64, vessel
 }
 
 fn own_cell(cluster: &Cluster) -> Option<ForkCell> {
-    Fork::of(cluster)?.shape()?.cell()
+    Fork::of(cluster)?.shape(1.0)?.cell()
 }
 
 fn in_own_cell(cluster: Cluster) -> Cluster {
@@ -212,7 +212,7 @@ fn forks_are_images_of_the_nearest_shared_cells() {
     let similar = [95.0, 96.0, 98.0, 104.0, 95.5, 96.5, 97.0, 97.5, 92.0].map(|azimuth| fork(azimuth, 0.5));
     let loose = [(92.0, 0.26), (92.0, 0.29), (102.0, 0.26)].map(|(azimuth, radius)| fork(azimuth, radius));
     let clusters: Vec<Cluster> = alike.chain(similar).chain(loose).chain([fork(150.0, 0.1)]).collect();
-    let cells_of = |count: u32| shared_cells(count, |i| clusters[i as usize].clone());
+    let cells_of = |count: u32| shared_cells(count, 1.0, |i| clusters[i as usize].clone());
     let cells = cells_of(21);
     let own = |i: u32| vec![own_cell(&clusters[i as usize]).expect("a cell")];
     assert_eq!(cells.chosen.len(), 3);
@@ -235,6 +235,27 @@ fn forks_are_images_of_the_nearest_shared_cells() {
 }
 
 #[test]
+fn stretched_forks_have_fewer_tetrahedra() {
+    let mut vessels = plain();
+    vessels.iter_mut().for_each(|(_, length, _)| *length += 0.8);
+    let input = cluster(Point3::origin(), turned(0.4), 0.0, vessels);
+    let made = |stretch: f64| {
+        let cells = shared_cells(8, stretch, |_| input.clone()).of(0);
+        let input = Cluster { cells, ..input.clone() };
+        let params = BlockParams { stretch, ..shared() };
+        let mesh = mesh_cluster(ClusterId(0), &input, &params).expect("a cluster");
+        assert!(mesh.is_image());
+        Finished::of_cluster(mesh, |node| node.0).expect("its ends are on its boundary")
+    };
+    let [plain, stretched] = [1.0, 4.0].map(made);
+    assert!(stretched.certificate.is_sound() && plain.joints.len() == stretched.joints.len());
+    let [n, m] = [&plain, &stretched].map(|block| block.mesh.tets.len());
+    assert!(10 * m < 9 * n, "{m} {n}");
+    let [a, b] = [&plain, &stretched].map(volume);
+    assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+}
+
+#[test]
 fn azimuths_beside_half_a_turn_are_near_each_other() {
     let fork = |azimuth: f64| {
         let mut vessels = plain();
@@ -242,7 +263,7 @@ fn azimuths_beside_half_a_turn_are_near_each_other() {
         cluster(Point3::origin(), turned(0.0), 0.0, vessels)
     };
     let clusters: Vec<Cluster> = (0..9).map(|i| fork(if i < 8 { 168.0 } else { -168.0 })).collect();
-    let cells = shared_cells(9, |i| clusters[i as usize].clone());
+    let cells = shared_cells(9, 1.0, |i| clusters[i as usize].clone());
     assert_ne!(own_cell(&clusters[0]), own_cell(&clusters[8]));
     assert_eq!(cells.of(8), cells.of(0));
 }
