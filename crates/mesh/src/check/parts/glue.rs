@@ -151,11 +151,6 @@ impl Held {
         range.contains(&number).then_some(number)
     }
 
-    /// Number within its part of a joint given by its global number.
-    pub(super) fn joint_place(&self, (part, number): (u32, u32)) -> (u32, u32) {
-        (part, number - self.parts[part as usize].first_joint)
-    }
-
     pub(super) fn joint(&self, number: u32) -> HeldJoint {
         let Joint { faces, vertices, sum } = self.joints[number as usize];
         let [surface, component] = self.elsewhere.get(&number).copied().unwrap_or_default();
@@ -229,17 +224,18 @@ pub(super) struct Glued {
 }
 
 impl Glued {
-    /// Connects parts by pairs of joints, given by their numbers with their parts.
-    pub(super) fn new(held: &Held, pairs: &[[(u32, u32); 2]]) -> Self {
+    /// Connects parts by pairs of joints, each a part with the number of a joint in it.
+    pub(super) fn new<'a>(held: &Held, pairs: impl Iterator<Item = &'a [(u32, u32); 2]>) -> Self {
         let mut components = DisjointSets::new(held.components as usize);
         let mut surfaces = DisjointSets::new(held.surfaces.len());
         let mut joints = vec![0_i64; held.surfaces.len()];
         for pair in pairs {
-            let [a, b] = pair.map(|(part, joint)| {
-                let of = &held.parts[part as usize];
-                let joint = held.joint(joint);
-                (of.first_component + joint.component, of.first_surface + joint.surface)
-            });
+            let place = |joint: (u32, u32)| {
+                let of = &held.parts[joint.0 as usize];
+                let joint = held.joint(held.joint_number(joint)?);
+                Some((of.first_component + joint.component, of.first_surface + joint.surface))
+            };
+            let [Some(a), Some(b)] = pair.map(place) else { continue };
             let exist = |i: u32, n: usize| (i as usize) < n;
             if exist(a.0.max(b.0), held.components as usize) {
                 components.join(a.0, b.0);

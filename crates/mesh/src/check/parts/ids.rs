@@ -14,14 +14,15 @@ use std::io;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of points of the whole.
-pub(super) fn count(held: &Held, joined: &Joined) -> u64 {
-    let shared: u64 = joined.pairs.iter().map(|pair| u64::from(held.joint(pair[0].1).vertices)).sum();
+pub(super) fn count(parts: &dyn Parts, held: &Held, joined: &Joined) -> u64 {
+    let numbers = joined.pairs(parts).filter_map(|pair| held.joint_number(pair[0]));
+    let shared: u64 = numbers.map(|number| u64::from(held.joint(number).vertices)).sum();
     held.points.saturating_sub(shared)
 }
 
 /// Checks all ids; joints must be valid.
 pub(super) fn check(parts: &dyn Parts, held: &Held, joined: &Joined, tallies: &mut Tallies) -> io::Result<()> {
-    let count = count(held, joined);
+    let count = count(parts, held, joined);
     let size = usize::try_from(count.div_ceil(64)).map_err(|_| invalid("too many points"))?;
     let met: Vec<AtomicU64> = (0..size).map(|_| AtomicU64::new(0)).collect();
     let mark = |part: u32| -> io::Result<bool> {
@@ -63,9 +64,7 @@ fn name_faults(parts: &dyn Parts, held: &Held, joined: &Joined, count: u64, tall
         }
     }
     let mut allowed: BTreeMap<u32, u8> = BTreeMap::new();
-    let sides: BTreeMap<u32, (u32, u32)> =
-        parts.joined().iter().filter_map(|pair| Some((held.joint_number(pair[0])?, pair[0]))).collect();
-    for (part, joint) in joined.pairs.iter().filter_map(|pair| sides.get(&pair[0].1)) {
+    for [(part, joint), _] in joined.pairs(parts) {
         for id in parts.joint(*part, *joint)?.vertices {
             *allowed.entry(id).or_insert(1) += 1;
         }

@@ -18,10 +18,17 @@ const COMPARED: usize = 1 << 14;
 /// Result of the comparison of joints.
 #[derive(Debug, Default)]
 pub(super) struct Joined {
-    /// Connected pairs, as (part, number of the joint).
-    pub pairs: Vec<[(u32, u32); 2]>,
+    /// Flag per pair of [`Parts::joined`], true if it is connected.
+    connects: Vec<bool>,
     /// Condition violated by a joint.
     pub broken: Option<Line>,
+}
+
+impl Joined {
+    /// Connected pairs, as (part, joint).
+    pub(super) fn pairs<'a>(&'a self, parts: &'a dyn Parts) -> impl Iterator<Item = &'a [(u32, u32); 2]> {
+        parts.joined().iter().zip(&self.connects).filter(|(_, connects)| **connects).map(|(pair, _)| pair)
+    }
 }
 
 /// Flags per joint number, true for connected joints.
@@ -44,7 +51,7 @@ fn numbers(held: &Held, pair: &[(u32, u32); 2]) -> io::Result<[u32; 2]> {
 
 /// Checks every pair of joints.
 pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io::Result<Joined> {
-    let mut joined = Joined { pairs: Vec::with_capacity(parts.joined().len()), broken: None };
+    let mut joined = Joined { connects: Vec::with_capacity(parts.joined().len()), broken: None };
     let mut seen = vec![false; held.joint_count()];
     for pair in parts.joined() {
         let [a, b] = numbers(held, pair)?;
@@ -57,19 +64,22 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
                 }
             }
         }
-        if free {
-            joined.pairs.push([(pair[0].0, a), (pair[1].0, b)]);
-        } else {
+        joined.connects.push(free);
+        if !free {
             joined.broken = Some(Line::FacesSharedByTwo);
         }
     }
     drop(seen);
-    let mut keep = Vec::with_capacity(joined.pairs.len());
-    for some in joined.pairs.chunks(COMPARED) {
-        let compare = |pair: &[(u32, u32); 2]| compare(parts, held, &pair.map(|joint| held.joint_place(joint)));
-        for differences in some.par_iter().map(compare).collect::<io::Result<Vec<JointDifferences>>>()? {
-            keep.push(!differences.all);
-            if differences.all {
+    for (some, connects) in parts.joined().chunks(COMPARED).zip(joined.connects.chunks_mut(COMPARED)) {
+        let compare = |(pair, connects): (&[(u32, u32); 2], &bool)| match connects {
+            true => compare(parts, held, pair),
+            false => Ok(JointDifferences { all: true, ..JointDifferences::default() }),
+        };
+        let differences =
+            some.par_iter().zip(&*connects).map(compare).collect::<io::Result<Vec<JointDifferences>>>()?;
+        for (differences, connects) in differences.into_iter().zip(connects) {
+            if *connects && differences.all {
+                *connects = false;
                 joined.broken = Some(Line::LabelsMatchBoundary);
             }
             for (line, offender) in differences.found {
@@ -78,8 +88,6 @@ pub(super) fn check(parts: &dyn Parts, held: &Held, tallies: &mut Tallies) -> io
             }
         }
     }
-    let mut keep = keep.into_iter();
-    joined.pairs.retain(|_| keep.next().unwrap_or(true));
     Ok(joined)
 }
 

@@ -30,7 +30,7 @@ const EXCLUDE_EQUAL_POINTS: [Line; 8] = [
     Line::NoSelfIntersection,
 ];
 
-/// Checks a mesh in parts. Holds about `memory` bytes of walls at a time (at least two walls), and about 300 bytes per
+/// Checks a mesh in parts. Holds about `memory` bytes of walls at a time (at least two walls), and about 200 bytes per
 /// part. The result does not depend on the number of threads.
 ///
 /// # Errors
@@ -52,7 +52,8 @@ pub struct Looked<'a> {
     tallies: Tallies,
     /// Violated condition on the arrays of a part, if any; nothing else was tested then.
     unusable: Option<Line>,
-    boxes: Boxes,
+    /// Boxes of the parts.
+    boxes: Vec<Aabb>,
     /// Flags per joint, true for connected joints.
     is_joined: Vec<bool>,
     meetings: Meetings,
@@ -72,12 +73,13 @@ impl<'a> Looked<'a> {
         let unusable = tallies.first_of(&[Line::NotEmpty, Line::FinitePoints, Line::IndicesInRange]);
         let boxes = Boxes::new(if unusable.is_none() { list } else { Vec::new() });
         let is_joined = if unusable.is_none() { joints::flags(parts, &held)? } else { Vec::new() };
-        let mut looked = Self { parts, held, tallies, unusable, boxes, is_joined, meetings: Meetings::default() };
+        let mut meetings = Meetings::default();
         if unusable.is_none() {
-            looked.meetings = walls::meetings(looked.reader(), &looked.boxes, memory)?;
-            looked.meetings.parts.sort_unstable();
+            let reader = Reader { parts, held: &held, is_joined: &is_joined };
+            meetings = walls::meetings(reader, &boxes, memory)?;
+            meetings.parts.sort_unstable();
         }
-        Ok(looked)
+        Ok(Self { parts, held, tallies, unusable, boxes: boxes.into_vec(), is_joined, meetings })
     }
 
     fn reader(&self) -> Reader<'_> {
@@ -91,7 +93,7 @@ impl<'a> Looked<'a> {
 
     /// Boxes of the parts.
     pub fn into_boxes(self) -> Vec<Aabb> {
-        self.boxes.into_vec()
+        self.boxes
     }
 
     /// Second half of the check.
@@ -131,18 +133,19 @@ impl Whole<'_> {
         if sound {
             ids::check(self.looked.parts, &self.looked.held, &self.joined, &mut self.looked.tallies)?;
         }
-        let glued = Glued::new(&self.looked.held, &self.joined.pairs);
+        let glued = Glued::new(&self.looked.held, self.joined.pairs(self.looked.parts));
         let mut meetings = std::mem::take(&mut self.looked.meetings);
         let meeting = std::mem::take(&mut meetings.parts);
         let intersections = self.take_meetings(meetings);
         let roots: Vec<u32> = glued.surfaces().collect();
         let needed = [Line::PositiveTets, Line::BoundaryEdges, Line::NoSelfIntersection];
         if sound && roots.len() > 1 && self.looked.tallies.first_of(&needed).is_none() {
-            for offender in nests::within(self.looked.reader(), &glued, &self.looked.boxes)? {
+            let boxes = Boxes::new(std::mem::take(&mut self.looked.boxes));
+            for offender in nests::within(self.looked.reader(), &glued, &boxes)? {
                 self.looked.tallies.add(Line::NoSelfIntersection, offender);
             }
         }
-        counts.points = ids::count(&self.looked.held, &self.joined) as usize;
+        counts.points = ids::count(self.looked.parts, &self.looked.held, &self.joined) as usize;
         counts.volume = self.looked.held.volume;
         counts.components = glued.components;
         counts.boundary_components = roots.len();
