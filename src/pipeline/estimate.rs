@@ -5,10 +5,14 @@ use serde::{Deserialize, Serialize};
 use super::plan::{JointStyle, MeshPlan};
 use super::schedule::Cost;
 use crate::block::{BlockDump, BlockError, BlockInput, BlockParams, template_of};
-use crate::partition::{Cluster, ClusterId, Cut, Layout};
+use crate::partition::{Cluster, ClusterId, Cut, CutId, Layout};
 use crate::surface::{MAX_CELLS, SurfaceError, estimated_cells, lengths_outside};
 use anastomesh_mesh::geometry::Tube;
 use anastomesh_skeleton::{SizeAt, Skeleton};
+use rayon::prelude::*;
+
+/// Blocks whose costs are in memory at a time.
+const AT_A_TIME: u32 = 1 << 12;
 
 /// Tetrahedra per unit of length over radius at ρ = 1, and the exponent of ρ. Fitted to meshes of the kidney's subtrees at
 /// ρ = 3, 4 and 5.
@@ -81,9 +85,15 @@ pub struct Estimate {
 impl Estimate {
     /// Of all blocks of a network.
     pub(crate) fn of(partition: &Layout, plan: &MeshPlan) -> Self {
-        let clusters = partition.clusters().map(|cluster| possible_cost(&cluster, plan));
-        let connectors = partition.cuts().map(|cut| connector_cost(&cut, plan));
-        Self::sum(clusters.chain(connectors))
+        let clusters = partition.clusters_len() as u32;
+        let blocks = clusters + partition.cuts_len() as u32;
+        let cost = |block: u32| match block.checked_sub(clusters) {
+            None => possible_cost(&partition.cluster(ClusterId(block)), plan),
+            Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
+        };
+        // In order, so that the sum does not depend on threads.
+        let some = |first: u32| (first..blocks.min(first + AT_A_TIME)).into_par_iter().map(cost).collect::<Vec<_>>();
+        Self::sum((0..blocks).step_by(AT_A_TIME as usize).flat_map(some))
     }
 
     /// Of a network that is not cut yet; each edge counts as a block.
@@ -218,6 +228,15 @@ fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     let cost = cluster_cost(cluster, plan);
     let without_grid = Cost { wall: cost.wall, template: cost.template, ..of_tets(cost.tets) };
     if cost.bytes > plan.memory && without_grid.bytes <= plan.memory { without_grid } else { cost }
+}
+
+/// Expected costs of some blocks: clusters by their ids, then connectors.
+pub fn costs_of(partition: &Layout, blocks: &[u32], plan: &MeshPlan) -> Vec<Cost> {
+    let cost = |block: &u32| match block.checked_sub(partition.clusters_len() as u32) {
+        None => cluster_cost(&partition.cluster(ClusterId(*block)), plan),
+        Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
+    };
+    blocks.par_iter().map(cost).collect()
 }
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {

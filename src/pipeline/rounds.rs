@@ -14,7 +14,7 @@ use super::blocks::{Blocks, cut_nodes, original_nodes};
 use super::carried::Carried;
 use super::cures::{Cure, cure, cure_too_fine, partition_params};
 use super::error::RunError;
-use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
+use super::estimate::{Estimate, TooLarge, costs_of};
 use super::make::{BlockResult, Workshop};
 use super::plan::JointStyle;
 use super::report::Retry;
@@ -123,15 +123,8 @@ impl RunContext<'_> {
 
     /// Expected costs of blocks: clusters by their ids, then connectors.
     pub(super) fn costs(&self, partition: &Layout) -> Vec<Cost> {
-        (0..(partition.clusters_len() + partition.cuts_len()) as u32).map(|i| self.cost(partition, i)).collect()
-    }
-
-    fn cost(&self, partition: &Layout, block: u32) -> Cost {
-        let plan = self.shop.plan;
-        match block.checked_sub(partition.clusters_len() as u32) {
-            None => cluster_cost(&partition.cluster(ClusterId(block)), plan),
-            Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
-        }
+        let blocks: Vec<u32> = (0..(partition.clusters_len() + partition.cuts_len()) as u32).collect();
+        costs_of(partition, &blocks, self.shop.plan)
     }
 
     /// Makes all blocks of a partition. Blocks are independent, unless joints are woven.
@@ -171,7 +164,7 @@ impl RunContext<'_> {
     ) -> Result<(Vec<BlockResult>, Vec<Option<BlockResult>>), RunError> {
         let count = clusters.len();
         let todo: Vec<u32> = missing(&clusters, 0).chain(missing(&connectors, count)).collect();
-        let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
+        let costs = costs_of(making.partition, &todo, self.shop.plan);
         let made = self.timed(Stage::Blocks, &costs, |k| making.block(todo[k]))?;
         for (&block, made) in todo.iter().zip(made) {
             let block = block as usize;
@@ -188,13 +181,13 @@ impl RunContext<'_> {
         mut connectors: Vec<Option<BlockResult>>,
     ) -> Result<(Vec<BlockResult>, Vec<Option<BlockResult>>), RunError> {
         let todo: Vec<u32> = missing(&clusters, 0).collect();
-        let costs: Vec<Cost> = todo.iter().map(|&block| self.cost(making.partition, block)).collect();
+        let costs = costs_of(making.partition, &todo, self.shop.plan);
         let made = self.timed(Stage::Clusters, &costs, |k| making.block(todo[k]))?;
         todo.iter().zip(made).for_each(|(&block, made)| clusters[block as usize] = Some(made));
         let clusters = all(clusters);
         let todo: Vec<u32> = missing(&connectors, 0).collect();
-        let cost = |&cut: &u32| self.cost(making.partition, cut + clusters.len() as u32);
-        let costs: Vec<Cost> = todo.iter().map(cost).collect();
+        let blocks: Vec<u32> = todo.iter().map(|cut| cut + clusters.len() as u32).collect();
+        let costs = costs_of(making.partition, &blocks, self.shop.plan);
         let made = self.timed(Stage::Connectors, &costs, |k| making.woven(CutId(todo[k]), &clusters))?;
         todo.iter().zip(made).for_each(|(&cut, made)| connectors[cut as usize] = made);
         Ok((clusters, connectors))

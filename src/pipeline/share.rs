@@ -9,12 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use super::attempts::RetryStrategy;
 use super::error::RunError;
-use super::estimate::{Estimate, TooLarge, cluster_cost, connector_cost};
+use super::estimate::{Estimate, TooLarge, costs_of};
 use super::make::Workshop;
 use super::plan::MeshPlan;
 use super::rounds::RunContext;
 use super::routes::{Tangle, tangled_clusters};
-use super::schedule::Cost;
 use super::store::{KeyMaker, Shard, Store, fingerprint};
 use super::timing::{BlockTimes, Clock, StageTime, Stopwatch};
 use crate::partition::{ClusterId, CutId};
@@ -115,11 +114,7 @@ impl RunContext<'_> {
         let clusters = partition.clusters_len();
         let shop = shop.among(clusters);
         let own = dealt(&tasks.weights, shard);
-        let cost = |&i: &u32| match i.checked_sub(clusters as u32) {
-            None => cluster_cost(&partition.cluster(ClusterId(i)), shop.plan),
-            Some(cut) => connector_cost(&partition.cut(CutId(cut)), shop.plan),
-        };
-        let costs: Vec<Cost> = own.iter().map(cost).collect();
+        let costs = costs_of(&partition, &own, shop.plan);
         let (watch, failed) = (Watch::asking(progress), AtomicUsize::new(0));
         let before = shop.store.own_records();
         let stopwatch = Stopwatch::new(BlockTimes::default(), clusters);
