@@ -13,8 +13,9 @@ use anastomesh_mesh::geometry::{DisjointSets, Section, Tube};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::{BranchId, NodeId};
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Piece of a branch that lies in one cluster.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +44,7 @@ pub(super) struct Settler<'a> {
     /// Smallest radius of each cluster, by root.
     r_min: Vec<f64>,
     /// Cached obstacles of large clusters, by root.
-    large: FxHashMap<u32, Rc<Near>>,
+    large: FxHashMap<u32, Arc<Near>>,
     blending: f64,
 }
 
@@ -121,6 +122,7 @@ impl<'a> Settler<'a> {
         let mut dirty = vec![true; self.union.len()];
         loop {
             self.gather();
+            self.leave_clear(&mut dirty, progress)?;
             let mut changed: Vec<u32> = Vec::new();
             for run in 0..self.runs.len() {
                 if progress.is_cancelled() {
@@ -154,6 +156,39 @@ impl<'a> Settler<'a> {
             self.mark(&changed, &mut dirty);
         }
         Ok(given_up)
+    }
+
+    /// Removes the marks of small clusters whose ends are clear. Clusters do not depend on each other's planes until one moves.
+    fn leave_clear(&self, dirty: &mut [bool], progress: &dyn Progress) -> Result<(), PartitionError> {
+        let root_of = |&run: &u32| self.runs[run as usize].root;
+        let marked: Vec<&[u32]> = self
+            .by_root
+            .chunk_by(|a, b| root_of(a) == root_of(b))
+            .filter(|runs| dirty[root_of(&runs[0]) as usize])
+            .collect();
+        let is_clear = |runs: &&[u32]| {
+            if progress.is_cancelled() {
+                return Err(PartitionError::Cancelled);
+            }
+            Ok(runs.len() <= LARGE && self.is_clear(runs))
+        };
+        let clear: Vec<bool> = marked.par_iter().map(is_clear).collect::<Result<_, _>>()?;
+        for (runs, is_clear) in marked.into_iter().zip(clear) {
+            dirty[root_of(&runs[0]) as usize] = !is_clear;
+        }
+        Ok(())
+    }
+
+    /// True if all ends of a cluster's runs are clear.
+    fn is_clear(&self, runs: &[u32]) -> bool {
+        let near = self.near_of(runs);
+        runs.iter().all(|&run| {
+            let slots = self.runs[run as usize].slots;
+            [(Way::Back, slots[0]), (Way::Onward, slots[1])].into_iter().all(|(way, slot)| {
+                let slot = slot.map(|s| &self.slots[s as usize]).filter(|slot| slot.alive);
+                slot.is_none_or(|slot| self.clear_at(&near, run as usize, way, slot.planes[way.side()]).is_ok())
+            })
+        })
     }
 
     /// Joins the pieces on both sides of dropped cuts and marks the clusters of all changed slots.
@@ -220,19 +255,24 @@ impl<'a> Settler<'a> {
     }
 
     /// Returns the obstacles for the ends of a cluster.
-    pub fn near(&mut self, root: u32) -> Rc<Near> {
+    pub fn near(&mut self, root: u32) -> Arc<Near> {
         if let Some(near) = self.large.get(&root) {
-            return Rc::clone(near);
+            return Arc::clone(near);
         }
         let runs = self.runs_of(root);
-        let mut branches: Vec<u32> = runs.iter().map(|&run| self.runs[run as usize].branch).collect();
-        branches.dedup();
         let is_large = runs.len() > LARGE;
-        let near = Rc::new(Near::new(self.courses, &self.terminals, &branches, self.params, self.blending));
+        let near = Arc::new(self.near_of(runs));
         if is_large {
-            self.large.insert(root, Rc::clone(&near));
+            self.large.insert(root, Arc::clone(&near));
         }
         near
+    }
+
+    /// Obstacles for the ends of some runs of a cluster, in ascending order.
+    fn near_of(&self, runs: &[u32]) -> Near {
+        let mut branches: Vec<u32> = runs.iter().map(|&run| self.runs[run as usize].branch).collect();
+        branches.dedup();
+        Near::new(self.courses, &self.terminals, &branches, self.params, self.blending)
     }
 
     /// Start and end of a run of a course.
