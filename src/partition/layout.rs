@@ -21,6 +21,7 @@ use super::summary::{PartitionSummary, UncutCounts};
 use anastomesh_mesh::geometry::{Section, Tube};
 use anastomesh_skeleton::course::{Course, Courses, Way};
 use anastomesh_skeleton::{BranchId, Chains, FinePlace, FineStation, Leg, NodeId, SizeAt, Skeleton};
+use rayon::prelude::*;
 
 const NONE: u32 = u32::MAX;
 /// Length over which a vessel's direction at a bifurcation is measured, in radii of the node.
@@ -500,12 +501,14 @@ impl Layout {
             uncut: UncutCounts::of(self.uncut()),
             ..PartitionSummary::default()
         };
-        for (i, cluster) in (0..).zip(self.clusters()) {
+        let sizes = |i| {
+            let (id, cluster) = (ClusterId(i), self.cluster(ClusterId(i)));
             // Clusters with a junction have three pieces, or one that closes on the junction; others have one piece.
-            let pieces = self.pieces_in(ClusterId(i));
-            summary.junction_clusters += usize::from(pieces > 2 || (pieces == 2 && cluster.ends.len() != 2));
-            summary.largest_tubes = summary.largest_tubes.max(cluster.tubes.len());
-        }
+            let pieces = self.pieces_in(id);
+            (usize::from(pieces > 2 || (pieces == 2 && cluster.ends.len() != 2)), cluster.tubes.len())
+        };
+        let sizes = (0..self.clusters_len() as u32).into_par_iter().map(sizes);
+        (summary.junction_clusters, summary.largest_tubes) = sizes.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1.max(b.1)));
         let short = |w: &&PartitionWarning| matches!(w, PartitionWarning::ShortOverrun { .. });
         summary.short_overruns = self.warnings().iter().filter(short).count();
         summary.caps_not_clear = self.warnings().len() - summary.short_overruns;

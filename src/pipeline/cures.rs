@@ -11,6 +11,7 @@ use super::tips::is_buried;
 use crate::block::BlockError;
 use crate::partition::{Cluster, ClusterEnd, ClusterId, CutId, EndKind, Layout, PartitionParams};
 use anastomesh_skeleton::{BranchId, SizeAt, Skeleton};
+use rayon::prelude::*;
 
 /// Stage of the cure of a branch with a failed cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,9 +62,10 @@ pub(super) fn cure_too_fine(
     plan: &MeshPlan,
     cures: &mut BTreeMap<BranchId, Cure>,
 ) -> Vec<Retry> {
-    let ids = (0..partition.clusters_len() as u32).map(ClusterId);
-    let too_fine = |id| too_fine(id, &partition.cluster(id), plan);
-    ids.filter_map(|id| cure_cluster(skeleton, partition, (id, &too_fine(id)?), cures)).collect()
+    let ids = (0..partition.clusters_len() as u32).into_par_iter().map(ClusterId);
+    let failure = |id| Some((id, too_fine(id, &partition.cluster(id), plan)?));
+    let failures: Vec<(ClusterId, BlockError)> = ids.filter_map(failure).collect();
+    failures.iter().filter_map(|(id, error)| cure_cluster(skeleton, partition, (*id, error), cures)).collect()
 }
 
 /// Chooses cures for failed blocks and returns them as retries; empty without failures or remaining cures.
