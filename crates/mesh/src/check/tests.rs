@@ -4,6 +4,7 @@ use super::result::{KEPT_OFFENDERS, PRINTED_OFFENDERS};
 use super::*;
 use crate::adjacency::boundary_faces;
 use crate::geometry::{Point3, Vec3};
+use crate::second_order::SecondOrder;
 use crate::shapes::{cube_lattice, tube_lattice};
 use crate::{Cap, Patch, WALL};
 
@@ -11,7 +12,12 @@ const HEIGHT: f64 = 2.5;
 
 /// A straight vessel of radius 1 with an inlet at the bottom (node 7) and an outlet at the top (node 3).
 fn tube() -> (VolumeMesh, Expectation) {
-    let mesh = tube_lattice(4, 10, HEIGHT / 10.0);
+    tube_of(4)
+}
+
+/// One whose caps have `6 · rings` corners.
+fn tube_of(rings: u32) -> (VolumeMesh, Expectation) {
+    let mesh = tube_lattice(rings, 10, HEIGHT / 10.0);
     let cap = |node, z, normal| Cap { node, center: Point3::new(0.0, 0.0, z), normal, radius: 1.0 };
     let patch = |id, name: &str, cap| Patch { id, name: name.into(), cap };
     let boundary = boundary_faces(&mesh);
@@ -258,6 +264,45 @@ fn a_labelled_triangle_of_missing_points_has_no_place() {
     let count = volume.mesh.points.len() as u32;
     let place = |last: u32| labels::face_at(&volume.mesh.points, [0, 1, last]).position;
     assert!(place(count - 1).is_some() && place(count).is_none() && place(u32::MAX).is_none());
+}
+
+#[test]
+fn curved_caps_have_the_area_of_their_discs() {
+    let (mut volume, expectation) = tube_of(2);
+    volume.patches.iter_mut().filter_map(|patch| patch.cap.as_mut()).for_each(|cap| cap.radius = 1.02);
+    let report = check_volume(&volume, Some(&expectation));
+    let area = |report: &CheckReport| report.line(Line::CapArea).map(|line| line.outcome);
+    assert_eq!(area(&report), Some(Outcome::Fail));
+    let (curved, _) = SecondOrder::curved(&volume);
+    assert_eq!(area(&report.clone().with_second_order(&volume, &curved)), Some(Outcome::Pass));
+    let straight = SecondOrder::straight(&volume);
+    assert_eq!(area(&report.with_second_order(&volume, &straight)), Some(Outcome::Fail));
+}
+
+#[test]
+fn conditions_on_boundaries_concern_surfaces() {
+    for line in [Line::FinitePoints, Line::NoDuplicatePoints, Line::BoundaryEdges, Line::Loops, Line::CapNormal] {
+        assert!(line.concerns_surfaces(), "{line:?}");
+    }
+    for line in [Line::NotEmpty, Line::IndicesInRange, Line::PositiveTets, Line::NoUnusedPoints] {
+        assert!(!line.concerns_surfaces(), "{line:?}");
+    }
+}
+
+#[test]
+fn the_number_of_conditions_that_hold_is_told() {
+    let all = Line::ALL.len();
+    let of = |volume: &VolumeMesh, expectation: &Expectation| check_volume(volume, Some(expectation));
+    let (mut volume, expectation) = tube();
+    assert_eq!(text::tally(&of(&volume, &expectation), true), format!("all {all} conditions hold"));
+    assert_eq!(text::tally(&of(&volume, &expectation), false), format!("all {all} conditions hold (-v lists them)"));
+    let report = check_tets(&volume.mesh, Some(&expectation));
+    let skipped = report.lines.iter().filter(|line| matches!(line.outcome, Outcome::NotChecked(_))).count();
+    assert!(skipped > 0);
+    let told = format!("{} of {all} conditions hold, {skipped} skipped", all - skipped);
+    assert_eq!(text::tally(&report, true), told);
+    volume.mesh.points.push(Point3::new(0.5, 0.25, 0.125));
+    assert_eq!(text::tally(&of(&volume, &expectation), true), format!("{} of {all} conditions hold", all - 1));
 }
 
 #[test]

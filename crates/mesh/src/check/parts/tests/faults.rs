@@ -272,6 +272,19 @@ fn faults_of_caps() {
     assert_same(&tilted);
 }
 
+/// A wall with more ids than points.
+#[test]
+fn walls_with_ids_of_no_points_are_refused() {
+    let cut = bar();
+    let mut tallies = tallies::Tallies::default();
+    let (held, _) = glue::Held::read(&cut, &mut tallies).unwrap();
+    let is_joined = joints::flags(&cut, &held).unwrap();
+    let mut wall = cut.wall(1).unwrap();
+    assert!(held.is_wall(1, &is_joined, &wall));
+    wall.vertices.push(0);
+    assert!(!held.is_wall(1, &is_joined, &wall));
+}
+
 /// Walls changed after certification.
 #[test]
 fn what_was_not_certified_is_refused() {
