@@ -86,3 +86,19 @@ pub(super) fn enclosed(points: &[Point3], faces: &[[u32; 3]], surfaces: &Surface
     }
     enclosed
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cavity_has_a_volume_that_is_certainly_negative() {
+        let enclosed = |volume, doubt| Enclosed { volume, doubt };
+        assert!(Enclosed::exactly(-1.0).is_cavity() && enclosed(-2e-9, 1e-9).is_cavity());
+        assert!(!Enclosed::exactly(0.0).is_cavity() && !Enclosed::exactly(1.0).is_cavity());
+        assert!(!enclosed(-1e-9, 2e-9).is_cavity() && !enclosed(1e-9, 2e-9).is_cavity());
+        // Within one other surface, only a cavity is not inside the mesh.
+        let within = |others, volume| is_within(others, &Enclosed::exactly(volume));
+        assert!(!within(0, 1.0) && !within(-1, 1.0) && within(1, 1.0) && !within(1, -1.0) && within(2, -1.0));
+    }
+}

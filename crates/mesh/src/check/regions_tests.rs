@@ -93,6 +93,35 @@ fn labels_of_outer_faces_are_compared() {
 }
 
 #[test]
+fn labelled_faces_of_missing_points_are_found() {
+    let (sound, regions, expectation) = channel();
+    let face = first_of(&sound, "organ");
+    for missing in [sound.mesh.points.len() as u32, u32::MAX] {
+        let mut volume = sound.clone();
+        volume.boundary[face][2] = missing;
+        let report = check_regions(&volume, &regions, Some(&expectation));
+        let outcome = |line| report.line(line).map(|result| result.outcome);
+        assert_eq!(outcome(Line::LabelsMatchBoundary), Some(Outcome::Fail));
+        let because = Outcome::NotChecked(Skipped::Because(Line::LabelsMatchBoundary));
+        assert_eq!(outcome(Line::CapPerTerminal), Some(because));
+    }
+}
+
+#[test]
+fn one_region_has_no_interface_to_be_labelled() {
+    let (mut volume, regions, _) = channel();
+    volume.tet_block.fill(regions[0].id);
+    let report = check_regions(&relabelled(volume), &regions[..1], None);
+    let outcome = |line| report.line(line).map(|result| result.outcome);
+    assert_eq!(outcome(Line::InterfacesLabelled), Some(Outcome::Pass));
+    let (mut volume, regions, _) = channel();
+    volume.boundary.retain(|_| false);
+    let report = check_regions(&volume, &regions, None);
+    let outcome = report.line(Line::InterfacesLabelled).map(|result| result.outcome);
+    assert!(matches!(outcome, Some(Outcome::NotChecked(_))), "{outcome:?}");
+}
+
+#[test]
 fn interfaces_are_labelled_once_and_turned_alike() {
     let (sound, regions, expectation) = channel();
     let face = first_of(&sound, "interface_wall_tissue");
