@@ -192,6 +192,7 @@ pub fn describe(offender: &Offender) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::{Expectation, check_tets};
+    use super::*;
     use crate::TetMesh;
     use crate::shapes::cube_lattice;
 
@@ -206,6 +207,36 @@ mod tests {
         assert!(text.contains("  -    every cap faces outwards: skipped, because the boundary has no labels\n"));
         assert!(text.ends_with("no fault found, but some conditions were skipped\n"));
         assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 1.0000"));
+    }
+
+    #[test]
+    fn few_faults_are_named() {
+        let mut mesh = cube_lattice(2);
+        assert_eq!(faults(&check_tets(&mesh, None), ""), "");
+        for t in &mut mesh.tets[20..35] {
+            t.swap(0, 1);
+        }
+        let text = faults(&check_tets(&mesh, None), " (-v)");
+        let first = text.split("FAIL ").nth(1).unwrap_or_default();
+        assert!(first.starts_with("15 tetrahedra are inverted or flat\n         tetrahedron 20 at "), "{text}");
+        assert!(first.ends_with(&format!("\n         and {} more (-v)\n", 15 - MAX_NAMED)), "{text}");
+        assert_eq!(first.lines().count(), 2 + MAX_NAMED);
+        mesh = cube_lattice(1);
+        mesh.tets[0].swap(0, 1);
+        assert!(faults(&check_tets(&mesh, None), " (-v)").starts_with("FAIL 1 tetrahedron is inverted or flat\n"));
+    }
+
+    #[test]
+    fn lists_are_shortened_and_compared() {
+        let numbers: Vec<u32> = (0..13).collect();
+        assert_eq!(list(&[]), "none");
+        assert_eq!(list(&numbers[..12]), "0 1 2 3 4 5 6 7 8 9 10 11");
+        assert_eq!(list(&numbers), "0 1 2 3 4 5 6 7 8 9 10 11 … (13 in all)");
+        assert_eq!(without(&[1, 1, 2, 5], &[1, 3, 5]), [1, 2]);
+        assert_eq!(without(&[1, 2], &[]), [1, 2]);
+        let pair = Offender::new(OffenderKind::FacePair, &[1, 2, 3, 4, 5, 6], None);
+        assert_eq!(describe(&pair), "faces of points 1 2 3 and 4 5 6");
+        assert_eq!(describe(&Offender::new(OffenderKind::Edge, &[1, 2], None)), "points 1 2");
     }
 
     #[test]

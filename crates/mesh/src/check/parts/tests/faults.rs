@@ -272,6 +272,17 @@ fn faults_of_caps() {
     assert_same(&tilted);
 }
 
+#[test]
+fn certificates_that_contradict_themselves_are_refused() {
+    let changes: [fn(&mut HeldJoint); 2] = [|joint| joint.surface = 7, |joint| joint.component = 7];
+    for change in changes {
+        let mut cut = bar();
+        change(&mut cut.certificates[1].joints[0]);
+        let error = check_parts(&cut, &cut.patches, None, usize::MAX).unwrap_err();
+        assert!(error.to_string().contains("the certificate of part 1 contradicts itself"), "{error}");
+    }
+}
+
 /// A wall with more ids than points.
 #[test]
 fn walls_with_ids_of_no_points_are_refused() {
