@@ -122,8 +122,8 @@ fn attempts(plan: &MeshPlan, tangle: Tangle, first: RetryStrategy) -> Vec<BlockA
     let tangled = tangle != Tangle::Free;
     let ways = || RetryStrategy::ALL.into_iter().filter(move |&way| way >= first && way != RetryStrategy::Narrowest);
     let apart = ways().filter(|way| !tangled || (!plan.fuse && way.may_part()));
-    let may_part = tangle != Tangle::Overlapping && !(tangled && plan.fuse);
-    let apart = apart.chain(may_part.then_some(RetryStrategy::Narrowest));
+    let almost_meet = tangle != Tangle::Overlapping && !(tangled && plan.fuse);
+    let apart = apart.chain(almost_meet.then_some(RetryStrategy::Narrowest));
     let apart = apart.map(|way| BlockAttempt { name: way.name().into(), params: way.params(plan) });
     let closed = ways().filter(|way| way.may_part() && !(tangled && plan.fuse)).map(|way| BlockAttempt {
         name: format!("narrow gaps closed, {}", way.name()),
