@@ -322,3 +322,19 @@ fn apart(pieces: &dyn MeshSource, faces: &[[u32; 3]]) -> io::Result<FacesApart> 
     let faces = faces.iter().map(|face| face.map(place)).collect();
     Ok(FacesApart { points, vertices, faces })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_have_their_positions() {
+        let ids = Ids::of(&[[9, 3, 4, 5], [6, 1, 20, 21]]);
+        let all = [1, 3, 4, 5, 6, 9, 20, 21];
+        assert_eq!((&ids.all[..], ids.run.clone()), (&all[..], 1..5));
+        for id in 0..23 {
+            assert_eq!(ids.local(id), all.binary_search(&id).ok().map(|i| i as u32), "{id}");
+        }
+        assert_eq!(Ids::of(&[]).local(0), None);
+    }
+}
