@@ -33,7 +33,7 @@ fn routes(partition: &Layout) -> Vec<(BranchId, u32)> {
     routes
 }
 
-/// How close vessels of a cluster come to each other, apart from bifurcations.
+/// Closeness of the vessels of a cluster, apart from bifurcations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tangle {
     /// No two vessels meet.
