@@ -237,7 +237,9 @@ fn forks_are_images_of_the_nearest_shared_cells() {
 #[test]
 fn stretched_forks_have_fewer_tetrahedra() {
     let mut vessels = plain();
-    vessels.iter_mut().for_each(|(_, length, _)| *length += 0.8);
+    for (_, length, _) in &mut vessels {
+        *length += 0.8;
+    }
     let input = cluster(Point3::origin(), turned(0.4), 0.0, vessels);
     let made = |stretch: f64| {
         let cells = shared_cells(8, stretch, |_| input.clone()).of(0);
