@@ -18,7 +18,7 @@ use std::sync::Arc;
 const MAX_RETRACTIONS: usize = 4;
 
 /// Maximum retractions of one terminal. One that is still open then lies in a vessel, and further ones do not help.
-const RETRACTIONS_OF_TIP: usize = 2;
+const RETRACTIONS_OF_TIP: usize = 3;
 
 /// Relative volume error of a refined network above which it is meshed without refinement. Applies if only vessels of one
 /// branch point overlap.
