@@ -169,7 +169,7 @@ Each case ends in one of four ways:
 - **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
   Limits grow with inputs of more than 2,000 edges, triangles or lines.
 
-Figures are sums over all builds, but for one column: *of the last, %* has the share of valid meshes and of those beyond a limit with
+Figures are sums over all builds, but for one column. *Of the last, %* has the share that is valid or beyond a limit with
 the newest builds. They are as few as have at least {LAST} cases of a kind. Their number is in brackets.
 
 A mesh is wrong and called valid if the program calls it valid and at least one checker does not. N is the number of valid meshes that both
