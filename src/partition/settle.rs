@@ -158,7 +158,7 @@ impl<'a> Settler<'a> {
         Ok(given_up)
     }
 
-    /// Removes the marks of small clusters whose ends are clear. Clusters do not depend on each other's planes until one moves.
+    /// Removes the marks of small clusters whose ends are clear, which depends on the planes of a cluster alone.
     fn leave_clear(&self, dirty: &mut [bool], progress: &dyn Progress) -> Result<(), PartitionError> {
         let root_of = |&run: &u32| self.runs[run as usize].root;
         let marked: Vec<&[u32]> = self

@@ -85,12 +85,8 @@ pub struct Estimate {
 impl Estimate {
     /// Of all blocks of a network.
     pub(crate) fn of(partition: &Layout, plan: &MeshPlan) -> Self {
-        let clusters = partition.clusters_len() as u32;
-        let blocks = clusters + partition.cuts_len() as u32;
-        let cost = |block: u32| match block.checked_sub(clusters) {
-            None => possible_cost(&partition.cluster(ClusterId(block)), plan),
-            Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
-        };
+        let blocks = (partition.clusters_len() + partition.cuts_len()) as u32;
+        let cost = |block| block_cost(partition, block, plan, possible_cost);
         // In order, so that the sum does not depend on threads.
         let some = |first: u32| (first..blocks.min(first + AT_A_TIME)).into_par_iter().map(cost).collect::<Vec<_>>();
         Self::sum((0..blocks).step_by(AT_A_TIME as usize).flat_map(some))
@@ -232,11 +228,20 @@ fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
 
 /// Expected costs of some blocks: clusters by their ids, then connectors.
 pub fn costs_of(partition: &Layout, blocks: &[u32], plan: &MeshPlan) -> Vec<Cost> {
-    let cost = |block: &u32| match block.checked_sub(partition.clusters_len() as u32) {
-        None => cluster_cost(&partition.cluster(ClusterId(*block)), plan),
+    blocks.par_iter().map(|&block| block_cost(partition, block, plan, cluster_cost)).collect()
+}
+
+/// Cost of a block. `of_cluster`: that of a cluster.
+fn block_cost(
+    partition: &Layout,
+    block: u32,
+    plan: &MeshPlan,
+    of_cluster: impl Fn(&Cluster, &MeshPlan) -> Cost,
+) -> Cost {
+    match block.checked_sub(partition.clusters_len() as u32) {
+        None => of_cluster(&partition.cluster(ClusterId(block)), plan),
         Some(cut) => connector_cost(&partition.cut(CutId(cut)), plan),
-    };
-    blocks.par_iter().map(cost).collect()
+    }
 }
 
 pub fn cluster_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {

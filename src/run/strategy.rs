@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
 const MAX_RETRACTIONS: usize = 4;
 
-/// Maximum retractions of one terminal. One that is still open then lies in a vessel, and further ones do not help.
+/// Maximum retractions of one terminal. On the shared networks, none that was open after them had a cap after a fourth.
 const RETRACTIONS_OF_TIP: usize = 3;
 
 /// Relative volume error of a refined network above which it is meshed without refinement. Applies if only vessels of one

@@ -235,6 +235,7 @@ impl Glued {
                 let joint = held.joint(held.joint_number(joint)?);
                 Some((of.first_component + joint.component, of.first_surface + joint.surface))
             };
+            // Joints that do not exist have been refused.
             let [Some(a), Some(b)] = pair.map(place) else { continue };
             let exist = |i: u32, n: usize| (i as usize) < n;
             if exist(a.0.max(b.0), held.components as usize) {
