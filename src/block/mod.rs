@@ -48,7 +48,7 @@ pub use fork::{shared_cells, template_of};
 pub use free_ends::shared_ends;
 pub use layered::ThinLayers;
 pub use params::{BlockParams, EndStyle};
-pub use record::{Bytes, Piece, Record, Sizes, encode};
+pub use record::{Bytes, Connectivity, Encoded, Geometry, Piece, Record};
 pub use topology::FinishedJoint;
 
 #[cfg(all(test, feature = "woven"))]

@@ -46,11 +46,11 @@ impl Blocks {
         self.clusters.iter().any(Result::is_err) || self.connectors.iter().any(|made| matches!(made, Some(Err(_))))
     }
 
-    /// Place of each block in the store, by number; `None` for missing ones.
+    /// Geometry of each block in the store, by number; `None` for missing ones.
     pub fn records(&self) -> impl Iterator<Item = Option<RecordId>> {
         let clusters = self.clusters.iter().map(Some);
         let made = clusters.chain(self.connectors.iter().map(Option::as_ref));
-        made.map(|made| Some(made?.as_ref().ok()?.record))
+        made.map(|made| Some(made?.as_ref().ok()?.records.geometry))
     }
 
     /// Name of a block by its number: clusters by their ids, then connectors.

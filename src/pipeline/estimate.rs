@@ -50,8 +50,8 @@ const PER_CELL: f64 = 80.0;
 /// Operations per tetrahedron of regions around the lumen, as measured with kidneys.
 const PER_TET_OF_REGIONS: f64 = 236.0;
 
-/// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. The last is for a
-/// compressed VTU with vertex numbers of 64 bits.
+/// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. Images of templates take
+/// half of the first. The last is for a compressed VTU with vertex numbers of 64 bits.
 const STORED_PER_TET: f64 = 17.0;
 const WRITTEN_PER_TET: f64 = 35.0;
 const WRITTEN_WIDE_PER_TET: f64 = 23.0;

@@ -7,8 +7,8 @@ use super::attempts::{self, RetryStrategy, Tried};
 use super::effort::Effort;
 use super::plan::{JointStyle, MeshPlan};
 use super::routes::Tangle;
-use super::store::{Key, KeyMaker, RecordId, Store, StoreError};
-use crate::block::{About, BlockError, ConnectorEnd, Cured, Record, StoredEnd, encode};
+use super::store::{BlockRecords, Key, KeyMaker, Store, StoreError};
+use crate::block::{About, BlockError, ConnectorEnd, Cured, StoredEnd};
 use crate::partition::{Cluster, ClusterId, Cut, CutId, EndKind, ForkCell, Layout};
 use anastomesh_skeleton::Skeleton;
 use anastomesh_tet::parts::Watch;
@@ -16,8 +16,8 @@ use anastomesh_tet::parts::Watch;
 /// Finished block in the store, with its contribution to the counts of the mesh. There are millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredBlock {
-    /// Place in the store.
-    pub record: RecordId,
+    /// Places in the store.
+    pub records: BlockRecords,
     /// Number of its points, without those shared with earlier blocks.
     pub points: u32,
     pub tets: u32,
@@ -109,18 +109,13 @@ impl Workshop<'_> {
         }
         let points = finished.mesh.points.len() as u32 - finished.shared;
         let tets = finished.mesh.tets.len() as u32;
-        let bytes = encode(&finished)?;
-        drop(finished);
-        Ok(Ok(StoredBlock { record: self.store.keep(key, bytes)?, points, tets }))
+        Ok(Ok(StoredBlock { records: self.store.keep_block(key, &finished)?, points, tets }))
     }
 
     fn found(&self, key: Key) -> io::Result<Option<StoredBlock>> {
-        self.store.find(key).map(|record| self.kept(record)).transpose()
-    }
-
-    fn kept(&self, record: RecordId) -> io::Result<StoredBlock> {
-        let sizes = Record::open(&self.store.bytes(record))?.sizes();
-        Ok(StoredBlock { record, points: sizes.points - sizes.shared, tets: sizes.tets })
+        let Some(records) = self.store.find_block(key)? else { return Ok(None) };
+        let sizes = self.store.connectivity(records.connectivity)?.sizes();
+        Ok(Some(StoredBlock { records, points: sizes.points - sizes.shared, tets: sizes.tets }))
     }
 
     /// Report data of a block.
@@ -128,7 +123,7 @@ impl Workshop<'_> {
     /// # Errors
     /// The block cannot be read.
     pub fn about(&self, kept: &StoredBlock) -> io::Result<About> {
-        Ok(Record::open(&self.store.bytes(kept.record))?.notes()?.1)
+        Ok(self.store.geometry(kept.records.geometry)?.notes()?.1)
     }
 
     /// Ends between which a connector is woven; `None` beside a failed cluster.
@@ -145,7 +140,7 @@ impl Workshop<'_> {
         let mut ends = Vec::with_capacity(2);
         for (side, place) in joints_of_cut(partition, id).into_iter().enumerate() {
             let Ok(kept) = &clusters[place.part as usize] else { return Ok(None) };
-            let block = Record::open(&self.store.bytes(kept.record))?.block()?;
+            let block = self.store.block(kept.records)?.block()?;
             let section = partition.cluster(ClusterId(place.part)).ends[cut.sides[side].1 as usize].section;
             let end = block.end_surface(place.joint as usize, id, side as u8, section);
             ends.push(end.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?);

@@ -273,7 +273,7 @@ impl Making<'_> {
         if let Ok(kept) = &made
             && let Some(cured) = self.shop.about(kept)?.cured
         {
-            self.heard.lock().unwrap_or_else(PoisonError::into_inner).insert(kept.record, cured);
+            self.heard.lock().unwrap_or_else(PoisonError::into_inner).insert(kept.records.geometry, cured);
         }
         Ok(made)
     }

@@ -116,7 +116,7 @@ impl RunContext<'_> {
         let own = dealt(&tasks.weights, shard);
         let costs = costs_of(&partition, &own, shop.plan);
         let (watch, failed) = (Watch::asking(progress), AtomicUsize::new(0));
-        let before = shop.store.own_records();
+        let before = shop.store.blocks_made();
         let stopwatch = Stopwatch::new(BlockTimes::default(), clusters);
         let make = |i: u32| {
             let made = match i.checked_sub(clusters as u32) {
@@ -135,7 +135,7 @@ impl RunContext<'_> {
         Ok(ShareReport {
             blocks: tasks.weights.len(),
             share: own.len(),
-            found: own.len() - failed - (shop.store.own_records() - before),
+            found: own.len() - failed - (shop.store.blocks_made() - before),
             failed,
             seconds: times.clusters + times.connectors,
             estimate: tasks.estimate,

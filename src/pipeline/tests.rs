@@ -3,7 +3,7 @@
 use super::effort::Effort;
 use super::routes::Tangle;
 use super::*;
-use crate::block::{Finished, Record, encode};
+use crate::block::{Encoded, Finished, Record};
 use crate::partition::{Cluster, ClusterId, CutId, PartitionParams, partition};
 use anastomesh_mesh::WALL;
 use anastomesh_mesh::adjacency::tet_adjacency;
@@ -201,9 +201,9 @@ fn hollow_blocks_have_the_boundary_of_filled_ones() {
 fn finished_blocks_come_back_from_their_bytes() {
     let blocks = finished(&uneven(), &MeshPlan::default());
     for block in &blocks {
-        let bytes = encode(block).expect("encoded");
-        let record = Record::open(&bytes[..]).expect("a record");
-        assert_eq!(record.sizes().bytes(), bytes.len() as u64);
+        let Encoded { connectivity, hash, geometry } = Encoded::of(block).expect("encoded");
+        let record = Record::open(&connectivity[..], &geometry[..]).expect("a record");
+        assert_eq!(record.geometry.connectivity(), hash);
         assert_eq!(record.block().expect("decoded"), *block);
         // Every boundary face has one place.
         let mut faces = block.wall.clone();
@@ -213,8 +213,11 @@ fn finished_blocks_come_back_from_their_bytes() {
         let boundary = tet_adjacency(&block.mesh.tets, block.mesh.points.len());
         assert_eq!(faces, boundary.boundary().collect::<Vec<_>>());
         // Cut short anywhere it is an error, never a panic.
-        for length in (0..bytes.len()).step_by(997) {
-            assert!(Record::open(&bytes[..length]).and_then(|record| record.block()).is_err());
+        for length in (0..geometry.len()).step_by(997) {
+            assert!(Record::open(&connectivity[..], &geometry[..length]).and_then(|record| record.block()).is_err());
+        }
+        for length in (0..connectivity.len()).step_by(997) {
+            assert!(Record::open(&connectivity[..length], &geometry[..]).and_then(|record| record.block()).is_err());
         }
     }
     let [left, _, connector] = &blocks[..] else { panic!("two clusters and a connector") };

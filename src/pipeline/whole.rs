@@ -13,7 +13,7 @@ use super::blocks::{Blocks, Meetings};
 use super::make::JointPlace;
 use super::report::MeshSize;
 use super::store::{Store, StoredBytes};
-use crate::block::{FinishedCap, FinishedJoint, Record, Sizes};
+use crate::block::{Connectivity, FinishedCap, FinishedJoint, Geometry, Record};
 use anastomesh_flow::TerminalPatches;
 use anastomesh_mesh::check::parts::{Certificate, FacesApart, Looked, Parts};
 use anastomesh_mesh::geometry::{Aabb, Point3};
@@ -88,10 +88,9 @@ impl<'a> Whole<'a> {
     /// Counts boundary faces that are in no joint, and collects the caps, in order.
     fn boundary_of_blocks(&self) -> io::Result<(usize, Vec<FinishedCap>)> {
         let read = |part: &PartPlan| {
-            let bytes = self.record(*part)?;
-            let record = Record::open(&bytes)?;
-            let caps = if record.sizes().caps > 0 { record.caps()? } else { Vec::new() };
-            Ok((record.sizes().outer_faces() as usize, caps))
+            let sizes = self.connectivity(*part)?.sizes();
+            let caps = if sizes.caps > 0 { self.record(*part)?.caps()? } else { Vec::new() };
+            Ok((sizes.outer_faces() as usize, caps))
         };
         let (mut faces, mut caps) = (0, Vec::new());
         for some in self.plan.parts.chunks(READ) {
@@ -107,29 +106,41 @@ impl<'a> Whole<'a> {
     fn open_faces(&self) -> io::Result<usize> {
         let mut faces = 0;
         for place in self.plan.open.keys() {
-            let joints = Record::open(&self.record(self.plan.part(place.part))?)?.joints()?;
+            let joints = self.connectivity(self.plan.part(place.part))?.joints()?;
             faces += joints.get(place.joint as usize).map_or(0, |joint| joint.faces.len());
         }
         Ok(faces)
     }
 
-    /// The bytes of a part. Every pass comes here for each part, so this is where it is asked whether to stop.
-    fn record(&self, part: PartPlan) -> io::Result<StoredBytes<'a>> {
+    /// The geometry of a part. Every pass reads one of its records, so all of them ask whether to stop.
+    fn geometry(&self, part: PartPlan) -> io::Result<Geometry<StoredBytes<'_>>> {
         ask(self.listener.0)?;
-        Ok(self.store.bytes(part.record))
+        self.store.geometry(part.records.geometry)
     }
 
-    /// Numbers in the whole of the vertices of a part.
-    fn numbers(&self, part: u32, sizes: &Sizes) -> io::Result<PointNumbers> {
-        let mut shared = Vec::with_capacity(sizes.shared as usize);
+    /// The connectivity of a part.
+    fn connectivity(&self, part: PartPlan) -> io::Result<Connectivity<StoredBytes<'_>>> {
+        ask(self.listener.0)?;
+        self.store.connectivity(part.records.connectivity)
+    }
+
+    /// Both records of a part.
+    fn record(&self, part: PartPlan) -> io::Result<Record<StoredBytes<'_>>> {
+        ask(self.listener.0)?;
+        self.store.block(part.records)
+    }
+
+    /// Numbers in the whole of the vertices of a part, of which `count` are shared.
+    fn numbers(&self, part: u32, count: u32) -> io::Result<PointNumbers> {
+        let mut shared = Vec::with_capacity(count as usize);
         for &[(cluster, joint), _] in self.plan.joined_to(part) {
             let cluster = self.plan.part(cluster);
-            let joints = Record::open(&self.record(cluster)?)?.joints()?;
+            let joints = self.connectivity(cluster)?.joints()?;
             // Clusters share nothing, so all of their vertices are their own.
             let vertices = joints.get(joint as usize).map_or(&[][..], |joint| &joint.vertices);
             shared.extend(vertices.iter().map(|v| cluster.first_point + v));
         }
-        if shared.len() != sizes.shared as usize {
+        if shared.len() != count as usize {
             return Err(io::Error::new(io::ErrorKind::InvalidData, "two blocks have different discs at their joint"));
         }
         Ok(PointNumbers { shared, first: self.plan.part(part).first_point, own: self.plan.points_of(part) })
@@ -137,15 +148,15 @@ impl<'a> Whole<'a> {
 
     /// Reads a part for a single request.
     fn numbers_alone(&self, part: u32) -> io::Result<Vec<u32>> {
-        Ok(self.numbers(part, &Record::open(&self.record(self.plan.part(part))?)?.sizes())?.all())
+        Ok(self.numbers(part, self.connectivity(self.plan.part(part))?.sizes().shared)?.all())
     }
 
     /// Boundary faces of the whole that a part has, ascending, each with its patch.
-    fn outer_faces(&self, part: u32, record: &Record<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
-        let mut faces: Vec<(u32, i32)> = record.wall()?.into_iter().map(|face| (face, WALL)).collect();
-        if record.sizes().caps > 0 {
+    fn outer_faces(&self, part: u32, connectivity: &Connectivity<StoredBytes>) -> io::Result<Vec<(u32, i32)>> {
+        let mut faces: Vec<(u32, i32)> = connectivity.wall()?.into_iter().map(|face| (face, WALL)).collect();
+        if connectivity.sizes().caps > 0 {
             let patch_of = &self.plan.patch_of;
-            for cap in record.caps()? {
+            for cap in self.record(self.plan.part(part))?.caps()? {
                 let found = patch_of.binary_search_by_key(&cap.node.0, |(node, _)| *node);
                 let patch = found.map_or(WALL, |i| patch_of[i].1);
                 faces.extend(cap.faces.into_iter().map(|face| (face, patch)));
@@ -154,7 +165,7 @@ impl<'a> Whole<'a> {
         let first = JointPlace { part, joint: 0 };
         let last = JointPlace { part, joint: u32::MAX };
         if self.plan.open.range(first..=last).next().is_some() {
-            let joints = record.joints()?;
+            let joints = connectivity.joints()?;
             for (place, patch) in self.plan.open.range(first..=last) {
                 let open = joints.get(place.joint as usize).into_iter().flat_map(|j| &j.faces);
                 faces.extend(open.map(|&face| (face, *patch)));
@@ -210,9 +221,9 @@ impl<'a> Whole<'a> {
     pub(crate) fn joint_vertices(&self) -> io::Result<Vec<Vec<u32>>> {
         let mut all = Vec::with_capacity(self.plan.joined.len());
         for part in self.plan.clusters..self.plan.parts.len() as u32 {
-            let bytes = self.record(self.plan.part(part))?;
-            let record = Record::open(&bytes)?;
-            let (joints, numbers) = (record.joints()?, self.numbers(part, &record.sizes())?);
+            let connectivity = self.connectivity(self.plan.part(part))?;
+            let numbers = self.numbers(part, connectivity.sizes().shared)?;
+            let joints = connectivity.joints()?;
             all.extend(joints.iter().map(|joint| joint.vertices.iter().map(|&v| numbers.of(v)).collect()));
         }
         Ok(all)
@@ -233,10 +244,9 @@ impl MeshSource for Whole<'_> {
     }
 
     fn points(&self, part: u32) -> io::Result<Cow<'_, [Point3]>> {
-        let bytes = self.record(self.plan.part(part))?;
-        let record = Record::open(&bytes)?;
-        let mut points = record.points()?;
-        points.drain(..(record.sizes().shared as usize).min(points.len()));
+        let mut points = self.geometry(self.plan.part(part))?.points()?;
+        let shared = points.len().saturating_sub(self.plan.points_of(part) as usize);
+        points.drain(..shared);
         Ok(points.into())
     }
 
@@ -259,10 +269,9 @@ impl MeshSource for Whole<'_> {
 
     fn tets(&self, part: u32) -> io::Result<TetPiece<'_>> {
         let plan = self.plan.part(part);
-        let bytes = self.record(plan)?;
-        let record = Record::open(&bytes)?;
-        let numbers = self.numbers(part, &record.sizes())?.all();
-        let mut tets = record.tets()?;
+        let connectivity = self.connectivity(plan)?;
+        let numbers = self.numbers(part, connectivity.sizes().shared)?.all();
+        let mut tets = connectivity.tets()?;
         tets.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
         let blocks = vec![plan.block; tets.len()].into();
         Ok(TetPiece { tets: tets.into(), blocks })
@@ -270,11 +279,10 @@ impl MeshSource for Whole<'_> {
 
     fn boundary(&self, part: u32) -> io::Result<FacePiece<'_>> {
         let plan = self.plan.part(part);
-        let bytes = self.record(plan)?;
-        let record = Record::open(&bytes)?;
-        let numbers = self.numbers(part, &record.sizes())?;
-        let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &record)?.into_iter().unzip();
-        let mut faces = record.triangles(&faces)?;
+        let connectivity = self.connectivity(plan)?;
+        let numbers = self.numbers(part, connectivity.sizes().shared)?;
+        let (faces, patches): (Vec<u32>, Vec<i32>) = self.outer_faces(part, &connectivity)?.into_iter().unzip();
+        let mut faces = connectivity.triangles(&faces)?;
         faces.as_flattened_mut().iter_mut().for_each(|v| *v = numbers.of(*v));
         let blocks = vec![plan.block; faces.len()].into();
         Ok(FacePiece { faces: faces.into(), patches: patches.into(), blocks })
@@ -287,7 +295,7 @@ impl MeshSource for Whole<'_> {
 
     fn face_labels(&self, part: u32) -> io::Result<LabelPiece<'_>> {
         let plan = self.plan.part(part);
-        let faces = self.outer_faces(part, &Record::open(&self.record(plan)?)?)?;
+        let faces = self.outer_faces(part, &self.connectivity(plan)?)?;
         let patches = faces.iter().map(|(_, patch)| *patch).collect();
         Ok(LabelPiece { count: faces.len(), patches, blocks: vec![plan.block; faces.len()].into() })
     }
@@ -299,18 +307,17 @@ impl Parts for Whole<'_> {
     }
 
     fn certificate(&self, part: u32) -> io::Result<Certificate> {
-        Ok(Record::open(&self.record(self.plan.part(part))?)?.notes()?.0)
+        Ok(self.geometry(self.plan.part(part))?.notes()?.0)
     }
 
     fn wall(&self, part: u32) -> io::Result<FacesApart> {
-        let plan = self.plan.part(part);
-        let bytes = self.record(plan)?;
-        let record = Record::open(&bytes)?;
-        let faces: Vec<u32> = self.outer_faces(part, &record)?.into_iter().map(|(face, _)| face).collect();
-        let numbers = self.numbers(part, &record.sizes())?;
-        let (faces, vertices) = compact(record.triangles(&faces)?, record.sizes().points as usize);
+        let Record { connectivity, geometry } = self.record(self.plan.part(part))?;
+        let faces: Vec<u32> = self.outer_faces(part, &connectivity)?.into_iter().map(|(face, _)| face).collect();
+        let sizes = connectivity.sizes();
+        let numbers = self.numbers(part, sizes.shared)?;
+        let (faces, vertices) = compact(connectivity.triangles(&faces)?, sizes.points as usize);
         Ok(FacesApart {
-            points: record.points_at(&vertices)?,
+            points: geometry.points_at(&vertices)?,
             vertices: vertices.iter().map(|&v| numbers.of(v)).collect(),
             faces,
         })
@@ -321,20 +328,18 @@ impl Parts for Whole<'_> {
     }
 
     fn joint(&self, part: u32, joint: u32) -> io::Result<FacesApart> {
-        let plan = self.plan.part(part);
-        let bytes = self.record(plan)?;
-        let record = Record::open(&bytes)?;
-        let FinishedJoint { vertices, faces } = record
+        let Record { connectivity, geometry } = self.record(self.plan.part(part))?;
+        let FinishedJoint { vertices, faces } = connectivity
             .joints()?
             .into_iter()
             .nth(joint as usize)
             .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidData))?;
-        let numbers = self.numbers(part, &record.sizes())?;
+        let numbers = self.numbers(part, connectivity.sizes().shared)?;
         let local = |v: u32| vertices.partition_point(|&x| x < v) as u32;
         Ok(FacesApart {
-            points: record.points_at(&vertices)?,
+            points: geometry.points_at(&vertices)?,
             vertices: vertices.iter().map(|&v| numbers.of(v)).collect(),
-            faces: record.triangles(&faces)?.into_iter().map(|face| face.map(local)).collect(),
+            faces: connectivity.triangles(&faces)?.into_iter().map(|face| face.map(local)).collect(),
         })
     }
 

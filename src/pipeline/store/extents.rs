@@ -4,7 +4,6 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
@@ -13,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use super::error::StoreError;
 use super::shelf::Shelf;
 use super::{Backend, RecordId, Store, once};
-use crate::pipeline::effort::Ledger;
 
 /// Files, and the position of each record: its file, start and end.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -74,7 +72,7 @@ impl Store {
 
     /// Opens the records in the files of a folder, read-only. `None` if such files cannot exist.
     pub(crate) fn of_extents(folder: &Path, extents: &Extents) -> Option<Self> {
-        Some(Self { place: Backend::Shelf(extents.shelf(folder)?), known: Mutex::default(), ledger: Ledger::default() })
+        Some(Self::new(Backend::Shelf(extents.shelf(folder)?), FxHashMap::default()))
     }
 
     /// Writes the positions to a work directory, replacing earlier ones.

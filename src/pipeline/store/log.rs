@@ -81,11 +81,6 @@ impl LogFile {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).end
     }
 
-    /// Number of records.
-    pub(super) fn len(&self) -> usize {
-        self.ends.read().unwrap_or_else(PoisonError::into_inner).len()
-    }
-
     /// Flushes the file to disk.
     pub(super) fn sync(&self) -> io::Result<()> {
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).file.sync_data()

@@ -11,7 +11,7 @@ use super::key::{Key, KeyMaker};
 use anastomesh_skeleton::Skeleton;
 
 /// Version of the format of work directories.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 pub(crate) const MANIFEST: &str = "anastomesh.json";
 

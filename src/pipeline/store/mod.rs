@@ -3,6 +3,7 @@
 //! A block is looked up by its key before it is meshed. So a block that does not change when others are cut again is not
 //! meshed again. A run that was killed is repeated from the start, and finds nearly all blocks in the store.
 
+mod blocks;
 mod error;
 mod extents;
 mod folder;
@@ -23,12 +24,14 @@ use std::collections::hash_map::Entry;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+pub use blocks::BlockRecords;
 pub use error::{Difference, StoreError};
 pub(crate) use extents::Extents;
 pub use folder::Role;
@@ -60,6 +63,8 @@ impl RecordId {
 pub struct Store {
     place: Backend,
     known: Mutex<FxHashMap<ShortKey, RecordId>>,
+    /// Number of blocks that were added.
+    made: AtomicUsize,
     /// Work of the run that uses the store.
     ledger: Ledger,
 }
@@ -77,7 +82,11 @@ enum Backend {
 impl Store {
     /// In memory.
     pub fn in_memory() -> Self {
-        Self { place: Backend::Memory(RwLock::default()), known: Mutex::default(), ledger: Ledger::default() }
+        Self::new(Backend::Memory(RwLock::default()), FxHashMap::default())
+    }
+
+    fn new(place: Backend, known: FxHashMap<ShortKey, RecordId>) -> Self {
+        Self { place, known: Mutex::new(known), made: AtomicUsize::new(0), ledger: Ledger::default() }
     }
 
     /// True if the run has spent so much on failed blocks that another network is not worth trying.
@@ -97,7 +106,7 @@ impl Store {
     pub fn in_passing(folder: &Path) -> Result<Self, StoreError> {
         let failed = |source| StoreError::Folder { path: folder.to_path_buf(), source };
         let log = LogFile::in_passing(folder).map_err(failed)?;
-        Ok(Self { place: Backend::File(log), known: Mutex::default(), ledger: Ledger::default() })
+        Ok(Self::new(Backend::File(log), FxHashMap::default()))
     }
 
     /// Opens the store of a work directory, with its blocks. `restart` deletes the blocks of another network, other options
@@ -116,11 +125,7 @@ impl Store {
     pub(crate) fn in_folder_as(role: Role, folder: &Path, manifest: &Manifest) -> Result<Self, StoreError> {
         let folder::Opened { own, others, keys } = folder::open(folder, manifest, role)?;
         let known = keys.into_iter().zip(0..).map(|(key, i)| (key.short(), RecordId(i))).collect();
-        Ok(Self {
-            place: Backend::Folder(folder.to_path_buf(), others, own),
-            known: Mutex::new(known),
-            ledger: Ledger::default(),
-        })
+        Ok(Self::new(Backend::Folder(folder.to_path_buf(), others, own), known))
     }
 
     /// Returns a value that all runs in a work directory share: the stored one, or that of `make`, which is then stored. `of`
@@ -163,10 +168,15 @@ impl Store {
     /// # Errors
     /// The record cannot be written.
     pub(crate) fn keep(&self, key: Key, bytes: Vec<u8>) -> Result<RecordId, StoreError> {
+        self.add(key, bytes).map(|(record, _)| record)
+    }
+
+    /// Stores a record, unless one with this key exists. The second value is true if it is new.
+    fn add(&self, key: Key, bytes: Vec<u8>) -> Result<(RecordId, bool), StoreError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let Entry::Vacant(slot) = known.entry(key.short()) else {
-            drop(known);
-            return self.find(key).ok_or_else(|| io::Error::from(io::ErrorKind::NotFound).into());
+        let slot = match known.entry(key.short()) {
+            Entry::Occupied(record) => return Ok((*record.get(), false)),
+            Entry::Vacant(slot) => slot,
         };
         let id = match &self.place {
             Backend::Memory(records) => {
@@ -178,16 +188,7 @@ impl Store {
             Backend::Folder(_, others, own) => others.len() + append(own, key, &bytes)?,
             Backend::Shelf(_) => return Err(io::Error::from(io::ErrorKind::PermissionDenied).into()),
         };
-        Ok(*slot.insert(RecordId(id as u32)))
-    }
-
-    /// Number of records of this run and earlier runs in its place.
-    pub(crate) fn own_records(&self) -> usize {
-        match &self.place {
-            Backend::Memory(records) => records.read().unwrap_or_else(PoisonError::into_inner).len(),
-            Backend::File(log) | Backend::Folder(_, _, log) => log.len(),
-            Backend::Shelf(_) => 0,
-        }
+        Ok((*slot.insert(RecordId(id as u32)), true))
     }
 
     /// Size of the records on disk, in bytes.

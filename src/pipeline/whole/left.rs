@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use super::numbering::Numbering;
 use super::{CancelOnly, Whole};
-use crate::pipeline::store::{Extents, MANIFEST, Store, StoreError};
+use crate::pipeline::store::{BlockRecords, Extents, MANIFEST, Store, StoreError};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::{Cap, Patch};
@@ -70,13 +70,14 @@ impl LeftWhole {
 
     /// Reads the whole from a folder; `None` if no run has finished, or if it is damaged.
     pub fn open(folder: &Path) -> Option<Self> {
-        // Records are numbered as the parts.
+        // Two records per part, in order.
         let (extents, mut plan): (Extents, Box<Numbering>) = Store::left(folder, NAME)?;
-        if extents.len() != plan.parts.len() || !plan.is_sound() {
+        if extents.len() != 2 * plan.parts.len() || !plan.is_sound() {
             return None;
         }
         for (i, part) in plan.parts.iter_mut().enumerate() {
-            part.record = Extents::record(i);
+            let [geometry, connectivity] = [2 * i, 2 * i + 1].map(Extents::record);
+            part.records = BlockRecords { geometry, connectivity };
         }
         Some(Self { store: Store::of_extents(folder, &extents)?, plan })
     }
@@ -93,7 +94,9 @@ impl Whole<'_> {
     /// # Errors
     /// The record cannot be written.
     pub fn leave(&self) -> Result<(), StoreError> {
-        let Some(extents) = self.store.extents(self.plan.parts.iter().map(|part| part.record)) else { return Ok(()) };
+        let records = self.plan.parts.iter().map(|part| part.records);
+        let records = records.flat_map(|BlockRecords { geometry, connectivity }| [geometry, connectivity]);
+        let Some(extents) = self.store.extents(records) else { return Ok(()) };
         self.store.leave(NAME, &(extents, &*self.plan))
     }
 }

@@ -6,7 +6,7 @@ use std::io;
 use crate::partition::CutId;
 use crate::pipeline::blocks::Blocks;
 use crate::pipeline::make::{JointPlace, StoredBlock, joints_of_cut};
-use crate::pipeline::store::RecordId;
+use crate::pipeline::store::BlockRecords;
 use anastomesh_mesh::source::SourceCounts;
 use anastomesh_mesh::{Patch, WALL};
 
@@ -33,7 +33,7 @@ pub(super) struct Numbering {
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct PartPlan {
     #[serde(skip)]
-    pub record: RecordId,
+    pub records: BlockRecords,
     /// Its number among all blocks, those that are missing included.
     pub block: i32,
     /// Number of the first vertex that is this part's own.
@@ -100,7 +100,7 @@ impl Numbering {
         let (Ok(first_point), Ok(_)) = (u32::try_from(first), u32::try_from(*points)) else {
             return Err(io::Error::other(TooManyPoints(*points as u64)));
         };
-        self.parts.push(PartPlan { record: kept.record, block, first_point, first_tet });
+        self.parts.push(PartPlan { records: kept.records, block, first_point, first_tet });
         Ok(self.parts.len() as u32 - 1)
     }
 
