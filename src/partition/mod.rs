@@ -13,6 +13,8 @@ mod summary;
 mod window;
 
 #[cfg(test)]
+mod recorded;
+#[cfg(test)]
 mod tests;
 
 use std::sync::Arc;

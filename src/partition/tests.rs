@@ -13,7 +13,7 @@ use anastomesh_skeleton::{Edge, Node, NodeId};
 use std::ops::Range;
 
 /// Skeleton of points with radii, and edges between them.
-fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
+pub(super) fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
     let node = |(i, (p, radius)): (usize, &([f64; 3], f64))| Node {
         position: Point3::from(*p),
         radius: *radius,
@@ -27,7 +27,7 @@ fn skeleton(points: &[([f64; 3], f64)], edges: &[[u32; 2]]) -> Skeleton {
 }
 
 /// Polyline of unit radius.
-fn polyline(points: impl IntoIterator<Item = [f64; 3]>) -> Skeleton {
+pub(super) fn polyline(points: impl IntoIterator<Item = [f64; 3]>) -> Skeleton {
     let points: Vec<_> = points.into_iter().map(|p| (p, 1.0)).collect();
     let edges: Vec<_> = (1..points.len() as u32).map(|i| [i - 1, i]).collect();
     skeleton(&points, &edges)
@@ -48,7 +48,7 @@ fn only_reason(p: &Partition, branch: u32) -> Option<UncutReason> {
 }
 
 /// Two junctions `length` apart along x, each with two arms of 8.
-fn h_shape(length: f64) -> Skeleton {
+pub(super) fn h_shape(length: f64) -> Skeleton {
     skeleton(
         &[
             ([0.0, 0.0, 0.0], 1.0),
@@ -102,7 +102,7 @@ fn length_decides() {
 }
 
 /// Junction at the origin with a stem, an arm along x to another junction, and an arm at `degrees` to it.
-fn acute(degrees: f64, arm: f64) -> Skeleton {
+pub(super) fn acute(degrees: f64, arm: f64) -> Skeleton {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     skeleton(
         &[
@@ -252,7 +252,7 @@ fn a_tiny_tube_is_one_cluster() {
 }
 
 /// A helix of tiny edges with some noise.
-fn wiggly(edges: u32, step: f64, bend: f64) -> Vec<[f64; 3]> {
+pub(super) fn wiggly(edges: u32, step: f64, bend: f64) -> Vec<[f64; 3]> {
     let noise = |i: u32| f64::from((i.wrapping_mul(2_654_435_761)) >> 24) / 256.0 - 0.5;
     (0..=edges)
         .map(|i| {

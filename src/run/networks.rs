@@ -108,8 +108,9 @@ impl Networks {
         again
     }
 
-    /// Retracts terminals, given by their `original`; returns what was done, nothing if no terminal can be retracted.
-    pub(super) fn retract(&mut self, tips: &[u32]) -> Vec<TouchingTip> {
+    /// Retracts terminals, given by their `original` and the number of their earlier retractions. Returns what was done,
+    /// nothing if no terminal can be retracted.
+    pub(super) fn retract(&mut self, tips: &[(u32, u32)]) -> Vec<TouchingTip> {
         if tips.is_empty() {
             return Vec::new();
         }

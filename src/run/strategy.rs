@@ -18,7 +18,7 @@ use std::sync::Arc;
 const MAX_RETRACTIONS: usize = 4;
 
 /// Maximum retractions of one terminal. On the shared networks, none that was open after them had a cap after a fourth.
-const RETRACTIONS_OF_TIP: usize = 3;
+const RETRACTIONS_OF_TIP: u32 = 3;
 
 /// Relative volume error of a refined network above which it is meshed without refinement. Applies if only vessels of one
 /// branch point overlap.
@@ -397,9 +397,9 @@ impl<'a> Meshing<'a, '_> {
         loop {
             let made = mesh_shared(self.store, &networks.network, self.plan, self.fits, self.progress);
             let told = if retractions < MAX_RETRACTIONS && self.retracts && !self.store.is_hopeless() {
-                let mut tips = self.open_tips(&made, networks.prepare.measured);
-                tips.retain(|tip| retracted.iter().filter(|before| *before == tip).count() < RETRACTIONS_OF_TIP);
-                networks.retract(&tips)
+                let before = |tip| retracted.iter().filter(|before| **before == tip).count() as u32;
+                let tips = self.open_tips(&made, networks.prepare.measured).into_iter().map(|tip| (tip, before(tip)));
+                networks.retract(&tips.filter(|(_, before)| *before < RETRACTIONS_OF_TIP).collect::<Vec<_>>())
             } else {
                 Vec::new()
             };

@@ -63,7 +63,7 @@ const FURTHEST: f64 = 4.0;
 const LOST: f64 = 2.75;
 /// Maximum length of a removed vessel outside other vessels before a refinement, in radii.
 const LOST_WHOLE: f64 = 1.9;
-/// Retraction of a tip that could not be capped, in its radii.
+/// First retraction of a tip that could not be capped, in its radii. The next ones are twice as long each.
 const BACK: f64 = 2.0;
 /// Minimum extension of such a tip, in its radii: a block tries shorter ones. Maximum extension of any tip.
 const FORTH: f64 = 3.25;
@@ -100,18 +100,20 @@ pub(super) fn treat(
 }
 
 /// Retracts tips that could not be capped by some radii, or removes the remains of their vessels. `tips` holds their
-/// numbers in the input.
+/// numbers in the input, each with the number of its earlier retractions.
 ///
 /// # Errors
 /// No vessel remains.
-pub fn take_back(skeleton: &Skeleton, tips: &[u32]) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
+pub fn take_back(skeleton: &Skeleton, tips: &[(u32, u32)]) -> Result<(Skeleton, Vec<TouchingTip>), SkeletonError> {
     let mut work = Work::new(skeleton);
     let mut found = Vec::new();
     for tip in work.adjacency.terminals() {
         let name = skeleton.node(tip).original;
-        if let Some(way) = work.way(tip).filter(|_| tips.contains(&name)) {
+        let Some((_, before)) = tips.iter().find(|(tip, _)| *tip == name) else { continue };
+        if let Some(way) = work.way(tip) {
             let with = skeleton.edge(work.beside(&way)).nodes.map(|n| skeleton.node(n).original);
-            found.push(TouchingTip { tip: name, with, done: work.draw_back(&way) });
+            let back = BACK * f64::from(1_u32 << before.min(&8));
+            found.push(TouchingTip { tip: name, with, done: work.draw_back(&way, back) });
         }
     }
     Ok((clean(&work.result())?.0, found))
@@ -237,15 +239,17 @@ impl<'a> Work<'a> {
         self.is_near_a_wall(way, stand, -stand.radius)
     }
 
-    /// True if the axis of a path lies within another vessel, or at most `margin` outside.
+    /// True if the axis of a path lies within another vessel, or at most `margin` outside. Other edges of its own branch count
+    /// if the position is between their ends, as the branch is folded then.
     fn is_near_a_wall(&self, way: &TipBranch, stand: &Stand, margin: f64) -> bool {
         let mut found = false;
         self.tree.query(&Aabb::of_points([&stand.point]).grown(margin.max(0.0)), |id| {
             let edge = EdgeId(id);
             let tube = self.given.tube(edge);
             let (t, distance) = point_segment(&stand.point, &tube.a, &tube.b);
-            let other = self.branches.of_edge[edge.index()].0 != way.branch && !self.gone[edge.index()];
-            found |= other && distance - margin <= tube.radius(t);
+            let is_other = self.branches.of_edge[edge.index()].0 != way.branch
+                || edge != way.edges[stand.piece] && 0.0 < t && t < 1.0;
+            found |= is_other && !self.gone[edge.index()] && distance - margin <= tube.radius(t);
         });
         found
     }
@@ -356,13 +360,13 @@ impl<'a> Work<'a> {
         None
     }
 
-    /// Retracts a tip by `BACK` radii, and further until its disc leaves other vessels.
-    fn draw_back(&mut self, way: &TipBranch) -> TouchedBy {
+    /// Retracts a tip by `back` radii, and further until its disc leaves other vessels.
+    fn draw_back(&mut self, way: &TipBranch, back: f64) -> TouchedBy {
         let stands = self.stands(way);
         let radius = stands[0].radius;
         let keep = LEFT * self.given.tube(way.edges[way.edges.len() - 1]).max_radius();
         let has_room = |stand: &&Stand| stand.arc <= way.length - keep && !self.is_buried(way, stand);
-        match stands.iter().skip_while(|stand| stand.arc < BACK * radius).find(has_room) {
+        match stands.iter().skip_while(|stand| stand.arc < back * radius).find(has_room) {
             Some(stand) => {
                 self.cut(way, stand);
                 TouchedBy::Retracted { by: stand.arc }
@@ -475,7 +479,7 @@ mod tests {
     #[test]
     fn a_tip_that_could_not_be_capped_is_drawn_back_and_a_stub_taken_off() {
         for (length, done) in [(12.0, TouchedBy::Retracted { by: BACK }), (3.0, TouchedBy::Removed)] {
-            let (result, told) = take_back(&fork(length), &[3]).expect("vessels");
+            let (result, told) = take_back(&fork(length), &[(3, 0)]).expect("vessels");
             let [tip] = told[..] else { panic!("one tip: {told:?}") };
             assert_eq!((tip.tip, tip.done), (3, done));
             assert_eq!(result.check(), Ok(()));
@@ -489,19 +493,29 @@ mod tests {
         let mut hair = fork(0.9);
         hair.edges[2].radii = [0.02; 2];
         hair.nodes[3].radius = 0.02;
-        let (_, told) = take_back(&hair, &[3]).expect("vessels");
+        let (_, told) = take_back(&hair, &[(3, 0)]).expect("vessels");
         assert_eq!(told[0].done, TouchedBy::Removed);
+        // A thin end that folds back into its own vessel.
+        let points = [[-20.0, 0.0, 0.0], [0.0; 3], [-0.6, 0.5, 0.0], [-0.9, 0.4, 0.0]];
+        let mut folded = network(&points, 1.0, &[(0, 1), (1, 2), (2, 3)]);
+        folded.edges[1].radii = [0.1; 2];
+        folded.edges[2].radii = [0.01; 2];
+        let (cut, told) = take_back(&folded, &[(3, 0)]).expect("vessels");
+        let TouchedBy::Retracted { by } = told[0].done else { panic!("{told:?}") };
+        assert!(by > 1.0, "{by}");
+        let end = cut.nodes.iter().find(|node| node.original == 3).expect("there");
+        assert!(end.position.y == 0.0 && end.radius == 1.0, "{end:?}");
         // A stub that has space beyond.
         let mut stub = fork(2.5);
         stub.edges[2].radii = [0.7; 2];
         stub.nodes[3].radius = 0.7;
-        let (extended, told) = take_back(&stub, &[3]).expect("vessels");
+        let (extended, told) = take_back(&stub, &[(3, 0)]).expect("vessels");
         let TouchedBy::Extended { by } = told[0].done else { panic!("{told:?}") };
         assert!((FORTH * 0.7..=2.5).contains(&by), "{by}");
         let end = extended.nodes.iter().find(|node| node.original == 3).expect("there");
         assert!((end.position.y - 2.5 - by).abs() < 1e-9);
         let given = fork(12.0);
-        assert_eq!(take_back(&given, &[1, 77]).expect("vessels"), (given, Vec::new()));
+        assert_eq!(take_back(&given, &[(1, 0), (77, 0)]).expect("vessels"), (given, Vec::new()));
     }
 
     #[test]
