@@ -110,7 +110,7 @@ fn tetrahedra_grow_towards_axes_as_asked() {
 
 /// Two junctions, thin vessels at one side only: where edges do not follow radii, the clusters' walls are of different
 /// fineness.
-fn uneven() -> Skeleton {
+pub(super) fn uneven() -> Skeleton {
     let mut network = h(16.0);
     for edge in &mut network.edges[3..] {
         edge.radii = [0.5; 2];

@@ -3,6 +3,8 @@
 
 mod left;
 mod numbering;
+#[cfg(test)]
+mod tests;
 
 use std::borrow::Cow;
 use std::io;
