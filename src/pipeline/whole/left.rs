@@ -13,7 +13,8 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
 use anastomesh_mesh::{Cap, Patch};
 
-const NAME: &str = "whole";
+/// Name of the file, after that of the program.
+pub(super) const NAME: &str = "whole";
 
 /// As [`Patch`], with the letters of its name as bytes; a cap is its node, centre, normal and radius.
 #[derive(Serialize, Deserialize)]

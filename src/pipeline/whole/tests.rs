@@ -1,9 +1,11 @@
 //! Pieces of the whole agree with each other.
 
 use super::*;
+use crate::pipeline::store::{Extents, Manifest};
 use crate::pipeline::tests::uneven;
 use crate::pipeline::{MeshPlan, Meshed, mesh_into};
 use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::source::gather;
 
 fn meshed(store: &Store) -> Meshed<Whole<'_>> {
     mesh_into(store, &uneven(), &MeshPlan::default(), &|_| Ok(()), &()).expect("meshed")
@@ -66,4 +68,40 @@ fn both_sides_of_a_joint_have_the_same_points_and_numbers() {
     }
     let missing = whole.counts().points as u32;
     assert!(whole.points_of(&[missing]).is_err());
+}
+
+#[test]
+fn a_whole_in_a_work_directory_is_read_again_without_its_network() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let manifest = Manifest::new(&uneven(), serde_json::Value::Null);
+    assert!(!LeftWhole::may_be_in(folder.path()) && LeftWhole::open(folder.path()).is_none());
+    let given = {
+        let store = Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
+        let whole = meshed(&store).mesh;
+        whole.leave().expect("written");
+        gather(&whole).expect("read")
+    };
+    assert!(given.patches.iter().filter(|patch| patch.cap.is_some()).count() == 4);
+    let left = LeftWhole::open(folder.path()).expect("there");
+    assert_eq!(gather(&left.whole(&())).expect("read"), given);
+    // Other counts than those of the parts are found, and so is a file that is cut off.
+    let (extents, plan): (Extents, Numbering) = Store::left(folder.path(), left::NAME).expect("there");
+    let store = Store::in_folder(folder.path(), &manifest, false).expect("a work directory");
+    let broken = |change: &dyn Fn(&mut Numbering)| {
+        let mut plan = plan.clone();
+        change(&mut plan);
+        store.leave(left::NAME, &(extents.clone(), plan)).expect("written");
+        LeftWhole::open(folder.path()).is_none()
+    };
+    assert!(!broken(&|_| ()));
+    assert!(broken(&|plan| drop(plan.parts.pop())));
+    assert!(broken(&|plan| plan.parts[1].first_point = u32::MAX));
+    assert!(broken(&|plan| plan.parts[1].first_tet = u64::MAX));
+    assert!(broken(&|plan| plan.counts.points = 0));
+    assert!(broken(&|plan| plan.counts.tets = 0));
+    assert!(broken(&|plan| plan.counts.points = usize::MAX));
+    assert!(broken(&|plan| plan.clusters += 1));
+    assert!(broken(&|plan| plan.joined[0][1].0 = u32::MAX));
+    assert!(broken(&|plan| drop(plan.open.insert(JointPlace { part: u32::MAX, joint: 0 }, 1))));
+    assert!(!broken(&|_| ()));
 }
