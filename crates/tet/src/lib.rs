@@ -137,6 +137,8 @@ mod input_tests;
 #[cfg(test)]
 mod outside_tests;
 #[cfg(test)]
+mod recorded;
+#[cfg(test)]
 mod refined_tests;
 #[cfg(test)]
 mod tests;

@@ -85,7 +85,7 @@ fn flipped(mut s: TriMesh) -> TriMesh {
     s
 }
 
-fn joined(mut a: TriMesh, b: &TriMesh, scale: f64, shift: Vec3) -> TriMesh {
+pub(super) fn joined(mut a: TriMesh, b: &TriMesh, scale: f64, shift: Vec3) -> TriMesh {
     let n = a.points.len() as u32;
     a.points.extend(b.points.iter().map(|p| Point3::from(p.coords * scale + shift)));
     a.triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + n)));

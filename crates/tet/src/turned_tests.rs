@@ -7,7 +7,7 @@ use anastomesh_mesh::geometry::{Point3, Vec3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Random number generator.
-struct Rng(u64);
+pub(super) struct Rng(pub u64);
 
 impl Rng {
     fn next(&mut self) -> u64 {
@@ -30,7 +30,7 @@ impl Rng {
     }
 }
 
-fn turned(mut s: TriMesh, rng: &mut Rng) -> TriMesh {
+pub(super) fn turned(mut s: TriMesh, rng: &mut Rng) -> TriMesh {
     let rotation = rng.rotation();
     for p in &mut s.points {
         *p = rotation * *p;
@@ -50,7 +50,7 @@ fn triangulated(corners: &[u32], rng: &mut Rng, out: &mut Vec<[u32; 3]>) {
 }
 
 /// A plate over a convex polygon, with independent random triangulations at top and bottom.
-fn plate(n: u32, height: f64, rng: &mut Rng) -> TriMesh {
+pub(super) fn plate(n: u32, height: f64, rng: &mut Rng) -> TriMesh {
     let mut s = TriMesh::default();
     let mut angles: Vec<f64> = (0..n).map(|i| f64::from(i) + 0.9 * rng.share()).collect();
     for a in &mut angles {
@@ -70,7 +70,7 @@ fn plate(n: u32, height: f64, rng: &mut Rng) -> TriMesh {
 }
 
 /// A box with each face split in two, then `times` times each triangle in four: rows of points on straight lines.
-fn rows(sides: [f64; 3], times: u32) -> TriMesh {
+pub(super) fn rows(sides: [f64; 3], times: u32) -> TriMesh {
     let mut s = TriMesh::default();
     for k in 0..8_u32 {
         let at = |axis: usize| if k >> axis & 1 == 1 { sides[axis] } else { 0.0 };
@@ -86,7 +86,7 @@ fn rows(sides: [f64; 3], times: u32) -> TriMesh {
 }
 
 /// Splits every triangle in four.
-fn split(s: &TriMesh) -> TriMesh {
+pub(super) fn split(s: &TriMesh) -> TriMesh {
     let mut out = TriMesh { points: s.points.clone(), triangles: Vec::new() };
     let mut middles = std::collections::BTreeMap::new();
     for t in &s.triangles {

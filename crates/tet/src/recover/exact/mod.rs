@@ -183,4 +183,6 @@ impl<'a> ExactRecovery<'a> {
 }
 
 #[cfg(test)]
+pub(crate) mod shapes;
+#[cfg(test)]
 mod tests;
