@@ -218,7 +218,7 @@ mod tests {
             Networks::new(given.clone(), given.clone(), given, NodeNames::default(), PrepareReport::default());
         assert!(Arc::ptr_eq(&networks.given, &networks.network));
         assert!(networks.retract(&[]).is_empty());
-        let told = networks.retract(&[2]);
+        let told = networks.retract(&[(2, 0)]);
         assert!(told.len() == 1 && told[0].tip == 2, "{told:?}");
         assert!(networks.network.nodes[2].position.x > 2.0 && networks.prepare.touching == told);
         let again = networks.again(None);
