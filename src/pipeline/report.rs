@@ -57,6 +57,13 @@ pub struct FusedBlock {
     pub(crate) astray: Astray,
 }
 
+impl FusedBlock {
+    /// True if vessels became one lumen. The genus need not tell, and if it does, no two axes need be in one lumen.
+    pub fn is_one_lumen(&self) -> bool {
+        self.astray.fused.is_some() || self.handles > self.loops
+    }
+}
+
 /// A cluster in which loops of the skeleton enclose nothing: they lie within their own lumen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FilledLoops {

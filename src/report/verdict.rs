@@ -97,7 +97,7 @@ pub fn reason(defect: &Defect, run: &RunReport, name: NameOf) -> Option<String> 
             let blocks = |count: usize| counted(count, "block");
             let [outside, fused] = [
                 run.fused.iter().filter(|f| f.astray.outside.is_some()).count(),
-                run.fused.iter().filter(|f| f.astray.fused.is_some()).count(),
+                run.fused.iter().filter(|f| f.is_one_lumen()).count(),
             ];
             match (outside, fused) {
                 (0, n) => format!("separate vessels fused into one lumen in {}", blocks(n)),

@@ -133,7 +133,9 @@ impl<M: MeshSource> NetworkMesh<M> {
         if !self.check.is_valid() {
             defects.push(Defect::Invalid);
         }
-        if !self.report.keeps_vessels(plan.fuse) {
+        // Without that request, further loops exist in a valid mesh only if it was the last resort to fuse vessels.
+        let are_fused = !plan.fuse && self.check.is_valid() && self.report.anastomoses > 0;
+        if are_fused || !self.report.keeps_vessels(plan.fuse) {
             defects.push(Defect::VesselsNotKept);
         }
         // Vessels of missing blocks are no change of the network.

@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// Maximum retractions of terminals per strategy. Each one meshes the network again; unchanged blocks come from the store.
-const MAX_RETRACTIONS: usize = 4;
+const MAX_RETRACTIONS: usize = 8;
 
 /// Maximum retractions of one terminal. On the shared networks, none that was open after them had a cap after a fourth.
 const RETRACTIONS_OF_TIP: u32 = 3;
@@ -145,7 +145,7 @@ pub(super) struct Meshing<'a, 'b> {
 /// A sound mesh of the network as given is kept, and nothing is moved. Otherwise the network is refined. If that gives no
 /// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one. If only
 /// walls intersect that belong to vessels which do not overlap, finer edges are tried. If the network was to be refined
-/// and no mesh is valid, vessels that still overlap are fused.
+/// and no mesh is valid, vessels that still overlap or touch are fused.
 pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let best = if meshing.refine.is_some() && networks.refine.is_none() {
         as_given_or_refined(&networks, meshing)
@@ -253,7 +253,7 @@ fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candi
     Ok(best)
 }
 
-/// Meshes with overlapping vessels fused if the network was to be refined, and no attempt gave a valid mesh.
+/// Meshes with vessels that overlap or touch fused if the network was to be refined, and no attempt gave a valid mesh.
 fn fused<'a>(
     best: Result<Candidate<'a>, MeshingError>,
     meshing: &mut Meshing<'a, '_>,
@@ -271,12 +271,16 @@ fn fused<'a>(
     let refined = networks.refine.is_none().then(|| (meshing.refined)(networks)).transpose()?;
     for networks in [Some(networks.clone()), refined].into_iter().flatten() {
         let network = &networks.network;
-        if meshing.store.is_hopeless() || network.overlaps(&network.adjacency()).pairs.is_empty() {
+        let overlaps = network.overlaps(&network.adjacency());
+        let none_meet = overlaps.pairs.is_empty() && overlaps.unconnected.is_empty();
+        if meshing.store.is_hopeless() || none_meet {
             continue;
         }
         match meshing.attempt_by(&plan, Strategy::Fused, networks) {
             Ok(candidate) if fault(&candidate.stored.check, &candidate.stored.report, &plan).is_none() => {
-                meshing.progress.note("no mesh with overlapping vessels apart is valid: they were meshed as one lumen");
+                meshing.progress.note(
+                    "no mesh with these vessels apart is valid: those that overlap or touch were meshed as one lumen",
+                );
                 return Ok(candidate);
             }
             Err(failure) if failure.stops() => return Err(failure.into_error()),

@@ -373,7 +373,7 @@ impl<'a> Work<'a> {
             }
             None if way.from.is_none() => TouchedBy::Left,
             // A branch that lies within another vessel throughout is a spur of any length.
-            None if way.length > (BACK + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
+            None if way.length > (back + FURTHEST) * radius + keep && !self.is_buried(way, &stands[0]) => {
                 TouchedBy::Left
             }
             None => self.extend_or_remove(way, FORTH),
