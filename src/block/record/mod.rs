@@ -8,6 +8,8 @@
 mod bytes;
 mod connectivity;
 mod geometry;
+#[cfg(test)]
+mod tests;
 
 use std::io;
 

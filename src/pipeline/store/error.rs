@@ -162,3 +162,26 @@ impl fmt::Display for Difference {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_has_advice_of_its_own() {
+        let failed = |kind| StoreError::Write { place: "w".into(), source: io::Error::from(kind) }.to_string();
+        for kind in [io::ErrorKind::StorageFull, io::ErrorKind::QuotaExceeded] {
+            assert!(failed(kind).contains("free some space"), "{}", failed(kind));
+        }
+        assert!(failed(io::ErrorKind::Other).contains("check the disk"));
+    }
+
+    #[test]
+    fn ten_missing_shards_are_listed() {
+        let shards: Vec<Shard> = Shard::all(12).collect();
+        assert_eq!(listed(&shards[..1]), "shard 1/12 is");
+        assert_eq!(listed(&shards[..2]), "shards 1/12, 2/12 are");
+        assert!(listed(&shards[..10]).ends_with("9/12, 10/12 are"));
+        assert!(listed(&shards).ends_with("10/12, 2 more are"));
+    }
+}
