@@ -62,7 +62,8 @@ fn records_that_do_not_belong_together_or_contradict_themselves_are_refused() {
         let mut bytes = a.connectivity.clone();
         change(&mut bytes);
         Connectivity::open(&bytes[..]).and_then(|record| {
-            (record.joints()?, record.caps()?, record.wall()?, record.hull()?);
+            record.joints().and(record.caps())?;
+            record.wall().and(record.hull())?;
             record.tets()
         })
     };
