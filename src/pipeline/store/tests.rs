@@ -149,3 +149,39 @@ fn keys_tell_neighbours_apart() {
     assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
     assert_ne!(KeyMaker::new("a").finish(), KeyMaker::new("b").finish());
 }
+
+#[test]
+fn shards_are_joined_when_all_are_complete() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let open = |role| Store::in_folder_as(role, folder.path(), &manifest(3.0));
+    let alone = Role::Alone { restart: false, make_missing: false };
+    let shards: Vec<Shard> = Shard::all(2).collect();
+    let make = |shard: Shard, range: Range<u32>| {
+        let store = open(Role::Shard(shard)).expect("a shard");
+        fill(&store, range);
+        store.mark_done(shard).expect("marked");
+    };
+    make(shards[0], 0..3);
+    let missing = open(alone).expect_err("one is missing");
+    assert!(matches!(&missing, StoreError::Missing { shards: of, .. } if of[..] == shards[1..]), "{missing}");
+    make(shards[1], 3..5);
+    let joined = open(alone).expect("both are there");
+    assert_holds(&joined, 5);
+    fill(&joined, 5..7);
+    assert_holds(&joined, 7);
+    drop(joined);
+    // Another number of shards, and bytes after the last record of one.
+    let other = open(Role::Shard(Shard::new(1, 3).expect("a shard"))).expect_err("another number");
+    assert!(matches!(other, StoreError::OtherShards { was: 2, .. }), "{other}");
+    let path = folder.path().join(shards[0].records());
+    let whole = fs::read(&path).expect("records");
+    for bytes in [[&whole[..], b"more"].concat(), whole[..whole.len() - 1].to_vec()] {
+        fs::write(&path, &bytes).expect("written");
+        let damaged = open(alone).expect_err("damaged");
+        assert!(matches!(damaged, StoreError::Damaged { shard, .. } if shard == shards[0]), "{damaged}");
+        let rest = open(Role::Alone { restart: false, make_missing: true }).expect("the rest is made");
+        assert!(rest.find(key(0)).is_some() && rest.find(key(4)).is_some());
+    }
+    fs::write(&path, &whole).expect("written");
+    assert_holds(&open(alone).expect("both are there"), 7);
+}
