@@ -396,6 +396,8 @@ impl<'a> Meshing<'a, '_> {
 
     /// Meshes a network, and again as long as terminals that could not be capped can be retracted.
     fn attempt(&mut self, mut strategy: Strategy, mut networks: Networks) -> Outcome<'a> {
+        // A refinement would keep what further retractions lose.
+        let most = if strategy == Strategy::AsGiven { 1 } else { RETRACTIONS_OF_TIP };
         let mut retractions = 0;
         let mut retracted: Vec<u32> = Vec::new();
         loop {
@@ -403,7 +405,7 @@ impl<'a> Meshing<'a, '_> {
             let told = if retractions < MAX_RETRACTIONS && self.retracts && !self.store.is_hopeless() {
                 let before = |tip| retracted.iter().filter(|before| **before == tip).count() as u32;
                 let tips = self.open_tips(&made, networks.prepare.measured).into_iter().map(|tip| (tip, before(tip)));
-                networks.retract(&tips.filter(|(_, before)| *before < RETRACTIONS_OF_TIP).collect::<Vec<_>>())
+                networks.retract(&tips.filter(|(_, before)| *before < most).collect::<Vec<_>>())
             } else {
                 Vec::new()
             };
