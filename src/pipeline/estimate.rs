@@ -50,9 +50,10 @@ const PER_CELL: f64 = 80.0;
 /// Operations per tetrahedron of regions around the lumen, as measured with kidneys.
 const PER_TET_OF_REGIONS: f64 = 236.0;
 
-/// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. Images of templates take
-/// half of the first. The last is for a compressed VTU with vertex numbers of 64 bits.
+/// Bytes of a tetrahedron in the store and in a VTU, including its share of points and boundary faces. Connectors are images of
+/// templates, which share their connectivity. The last is for a compressed VTU with vertex numbers of 64 bits.
 const STORED_PER_TET: f64 = 17.0;
+const STORED_PER_TET_OF_TUBE: f64 = 9.0;
 const WRITTEN_PER_TET: f64 = 35.0;
 const WRITTEN_WIDE_PER_TET: f64 = 23.0;
 
@@ -89,7 +90,10 @@ impl Estimate {
         let cost = |block| block_cost(partition, block, plan, possible_cost);
         // In order, so that the sum does not depend on threads.
         let some = |first: u32| (first..blocks.min(first + AT_A_TIME)).into_par_iter().map(cost).collect::<Vec<_>>();
-        Self::sum((0..blocks).step_by(AT_A_TIME as usize).flat_map(some))
+        let costs = (0..blocks).step_by(AT_A_TIME as usize).flat_map(some);
+        let is_tube = |block: u32| block >= partition.clusters_len() as u32 && plan.joint == JointStyle::Disc;
+        let stored = |block| if is_tube(block) { STORED_PER_TET_OF_TUBE } else { STORED_PER_TET };
+        Self::sum(costs.zip((0..blocks).map(stored)))
     }
 
     /// Of a network that is not cut yet; each edge counts as a block.
@@ -97,7 +101,7 @@ impl Estimate {
         Self::sum(skeleton.edges.iter().map(|edge| {
             let [a, b] = edge.nodes.map(|n| skeleton.node(n).position);
             let radius = 0.5 * (edge.radii[0] + edge.radii[1]);
-            cost(std::iter::once(((b - a).norm(), radius, radius)), plan)
+            (cost(std::iter::once(((b - a).norm(), radius, radius)), plan), STORED_PER_TET)
         }))
     }
 
@@ -109,19 +113,21 @@ impl Estimate {
             BlockInput::Cluster { cluster, .. } => cluster_cost(cluster, &plan),
             BlockInput::Connector { cut, .. } | BlockInput::FreeConnector { cut, .. } => connector_cost(cut, &plan),
         };
-        Self::sum(std::iter::once(cost))
+        Self::sum(std::iter::once((cost, STORED_PER_TET)))
     }
 
-    fn sum(costs: impl Iterator<Item = Cost>) -> Self {
-        let mut all = Self::default();
-        for cost in costs {
+    /// Sum of costs, each with the bytes that a tetrahedron takes in the store.
+    fn sum(costs: impl Iterator<Item = (Cost, f64)>) -> Self {
+        let (mut all, mut bytes) = (Self::default(), 0.0);
+        for (cost, stored) in costs {
+            bytes += stored * cost.tets;
             all.tets += cost.tets;
             all.operations += cost.operations;
             all.wall += cost.wall;
             all.largest_block_tets = all.largest_block_tets.max(cost.tets);
             all.largest_block_bytes = all.largest_block_bytes.max(cost.bytes);
         }
-        all.stored_bytes = (all.tets * STORED_PER_TET) as u64;
+        all.stored_bytes = bytes as u64;
         all.written_bytes = written(all.tets);
         all
     }
