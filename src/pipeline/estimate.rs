@@ -232,6 +232,18 @@ fn possible_cost(cluster: &Cluster, plan: &MeshPlan) -> Cost {
     if cost.bytes > plan.memory && without_grid.bytes <= plan.memory { without_grid } else { cost }
 }
 
+/// Expected tetrahedra and operations of blocks that are contoured, other than images of templates: pieces of tubes, and bifurcations
+/// with a cell.
+pub fn contoured(partition: &Layout, plan: &MeshPlan) -> [f64; 2] {
+    let of = |i: u32| {
+        let cluster = partition.cluster(ClusterId(i));
+        let is_image = plan.joint == JointStyle::Disc && (!cluster.cells.is_empty() || is_piece(&cluster, plan));
+        let Cost { tets, operations, .. } = if is_image { Cost::default() } else { cluster_cost(&cluster, plan) };
+        [tets, operations]
+    };
+    (0..partition.clusters_len() as u32).map(of).fold([0.0; 2], |sum, cost| [sum[0] + cost[0], sum[1] + cost[1]])
+}
+
 /// Expected costs of some blocks: clusters by their ids, then connectors.
 pub fn costs_of(partition: &Layout, blocks: &[u32], plan: &MeshPlan) -> Vec<Cost> {
     blocks.par_iter().map(|&block| block_cost(partition, block, plan, cluster_cost)).collect()

@@ -2,24 +2,27 @@
 
 use super::cures::partition_params;
 use super::error::RunError;
-use super::estimate::{Estimate, cluster_cost};
+use super::estimate::{Estimate, cluster_cost, contoured};
 use super::plan::MeshPlan;
 use super::routes::{Tangle, tangled_clusters};
-use crate::partition;
+use crate::block::shared_cells;
+use crate::partition::{self, ClusterId};
 use anastomesh_network::split_in_place;
 use anastomesh_skeleton::Skeleton;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Tetrahedra that a thread makes, checks and writes per second: as measured with kidneys.
-const TETS_PER_SECOND: f64 = 3.1e5;
+/// Tetrahedra that a thread makes, checks and writes per second: images of templates as measured with kidneys, others as measured
+/// with vessels of brains.
+const TEMPLATE_TETS_PER_SECOND: f64 = 1.6e6;
+const TETS_PER_SECOND: f64 = 2.5e5;
 /// Operations per tetrahedron in that figure, and seconds per operation beyond: walls of wide vessels contoured at the
 /// resolution of thin ones.
 const OPERATIONS_PER_TET: f64 = 100.0;
 const SECONDS_PER_OPERATION: f64 = 5e-8;
-/// Attempts at a cluster in which vessels overlap, as most of them fail as they are.
-const ATTEMPTS: f64 = 4.0;
+/// Mean attempts at a cluster in which vessels overlap.
+const ATTEMPTS: f64 = 2.0;
 /// Memory of the program itself, with a network of some thousand edges.
 const AT_LEAST: u64 = 60_000_000;
 
@@ -34,6 +37,8 @@ pub struct Forecast {
     pub largest_nodes: usize,
     /// Tetrahedra, memory and disk.
     pub estimate: Estimate,
+    /// Tetrahedra and operations of clusters that are contoured, as they are no images of templates.
+    pub contoured: [f64; 2],
     /// Clusters in which vessels overlap. Most of them take several attempts, or fail.
     pub overlapping: usize,
     /// Operations of those attempts beyond the first.
@@ -50,25 +55,30 @@ impl Forecast {
         let params = partition_params(&network, plan, &BTreeMap::new(), &BTreeSet::new());
         let network = Arc::new(network);
         let partition = partition::lay_out(&network, &params, &())?.sized(plan.size_at.clone());
+        let clusters = partition.clusters_len() as u32;
+        let cells = shared_cells(clusters, plan.stretch, |i| partition.cluster(ClusterId(i)));
+        let partition = partition.with_cells(cells);
         let overlaps = network.overlaps(&network.adjacency());
         let tangled = tangled_clusters(&network, &partition, &overlaps);
-        let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled != Tangle::Free);
+        let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled == Tangle::Overlapping);
         let again: f64 = again.map(|(cluster, _)| cluster_cost(&cluster, plan).operations).sum();
         Ok(Self {
-            overlapping: tangled.iter().filter(|tangled| **tangled != Tangle::Free).count(),
+            overlapping: tangled.iter().filter(|tangled| **tangled == Tangle::Overlapping).count(),
             retry_operations: (ATTEMPTS - 1.0) * again,
             clusters: partition.clusters_len(),
             connectors: partition.cuts_len(),
             largest_nodes: partition.largest_nodes(),
             estimate: Estimate::of(&partition, plan),
+            contoured: contoured(&partition, plan),
         })
     }
 
     /// Seconds on this number of threads.
     pub fn seconds(&self, threads: usize) -> f64 {
-        let Estimate { tets, operations, .. } = self.estimate;
+        let [tets, operations] = self.contoured;
         let more = (operations - OPERATIONS_PER_TET * tets).max(0.0) + self.retry_operations;
-        (tets / TETS_PER_SECOND + SECONDS_PER_OPERATION * more) / threads.max(1) as f64
+        let images = (self.estimate.tets - tets) / TEMPLATE_TETS_PER_SECOND;
+        (images + tets / TETS_PER_SECOND + SECONDS_PER_OPERATION * more) / threads.max(1) as f64
     }
 
     /// Bytes of memory on this number of threads.
