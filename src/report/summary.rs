@@ -320,6 +320,7 @@ time     3 min (blocks 2 min, write 22 s)
             connectors: 58_999,
             largest_nodes: 12,
             estimate,
+            contoured: [1.3e8, 0.0],
             overlapping: 0,
             retry_operations: 0.0,
         };

@@ -165,7 +165,7 @@ fn shards_are_joined_when_all_are_complete() {
     let missing = open(alone).expect_err("one is missing");
     assert!(matches!(&missing, StoreError::Missing { shards: of, .. } if of[..] == shards[1..]), "{missing}");
     make(shards[1], 3..5);
-    let joined = open(alone).expect("both are there");
+    let joined = open(alone).expect("both exist");
     assert_holds(&joined, 5);
     fill(&joined, 5..7);
     assert_holds(&joined, 7);
@@ -183,5 +183,5 @@ fn shards_are_joined_when_all_are_complete() {
         assert!(rest.find(key(0)).is_some() && rest.find(key(4)).is_some());
     }
     fs::write(&path, &whole).expect("written");
-    assert_holds(&open(alone).expect("both are there"), 7);
+    assert_holds(&open(alone).expect("both exist"), 7);
 }
