@@ -33,6 +33,8 @@ const NEAR: f64 = 1.1;
 
 /// Factors on ρ where walls of vessels intersect that do not overlap.
 const FINER: [f64; 2] = [2.0, 4.0];
+/// Maximum edges of a network that is meshed with finer edges because a block failed.
+const FEW_EDGES: usize = 2_000;
 
 /// Network that an attempt meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -144,7 +146,7 @@ pub(super) struct Meshing<'a, 'b> {
 ///
 /// A sound mesh of the network as given is kept, and nothing is moved. Otherwise the network is refined. If that gives no
 /// sound mesh, or another volume, fallbacks follow. The best mesh is kept; of equally good ones, the planned one. If only
-/// walls intersect that belong to vessels which do not overlap, finer edges are tried. If the network was to be refined
+/// walls intersect, or blocks fail, and no vessels overlap, finer edges are tried. If the network was to be refined
 /// and no mesh is valid, vessels that still overlap or touch are fused.
 pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
     let best = if meshing.refine.is_some() && networks.refine.is_none() {
@@ -153,7 +155,7 @@ pub(super) fn mesh<'a>(networks: Networks, meshing: &mut Meshing<'a, '_>) -> Res
         let planned = meshing.attempt(Strategy::Planned, networks);
         or_fallback(planned, true, meshing).map_err(Failure::into_error)
     };
-    let best = best.and_then(|best| finer(best, meshing));
+    let best = finer(best, meshing);
     fused(best, meshing)
 }
 
@@ -228,29 +230,39 @@ fn or_fallback<'a>(first: Outcome<'a>, unrefined: bool, meshing: &mut Meshing<'a
     first
 }
 
-/// Meshes with finer edges if walls intersect although no vessels overlap: coarse walls deviate more from their tubes.
-fn finer<'a>(best: Candidate<'a>, meshing: &mut Meshing<'a, '_>) -> Result<Candidate<'a>, MeshingError> {
+/// Meshes with finer edges if walls intersect or are joined although no vessels overlap: coarse walls deviate more from their tubes.
+fn finer<'a>(
+    best: Result<Candidate<'a>, MeshingError>,
+    meshing: &mut Meshing<'a, '_>,
+) -> Result<Candidate<'a>, MeshingError> {
     let intersects =
         |check: &CheckReport| !check.is_valid() && check.failed().all(|line| line.line == Line::NoSelfIntersection);
-    let network = &best.networks.network;
-    if !intersects(&best.stored.check) || !network.overlaps(&network.adjacency()).pairs.is_empty() {
-        return Ok(best);
+    let (networks, factors) = match &best {
+        Ok(made) if intersects(&made.stored.check) => (made.networks.clone(), &FINER[..]),
+        Err(MeshingError::Blocks { networks, .. }) if networks.network.edges.len() <= FEW_EDGES => {
+            (Networks::clone(networks), &FINER[..1])
+        }
+        _ => return best,
+    };
+    let is_too_costly = best.is_err() && meshing.store.is_hopeless();
+    if is_too_costly || !networks.network.overlaps(&networks.network.adjacency()).pairs.is_empty() {
+        return best;
     }
-    for factor in FINER {
+    for factor in factors {
         let plan = MeshPlan { rho: factor * meshing.plan.rho, ..meshing.plan.clone() };
-        match meshing.attempt_by(&plan, Strategy::FinerEdges, best.networks.clone()) {
+        match meshing.attempt_by(&plan, Strategy::FinerEdges, networks.clone()) {
             Ok(candidate) if meshing.fault_of(&candidate.stored).is_none() => {
                 let rho = plan.rho;
                 meshing
                     .progress
-                    .note(&format!("walls that almost touch intersected: meshed with finer edges, rho {rho}"));
+                    .note(&format!("walls that almost touch were not apart: meshed with finer edges, rho {rho}"));
                 return Ok(candidate);
             }
             Err(failure) if failure.stops() => return Err(failure.into_error()),
             Ok(_) | Err(_) => {}
         }
     }
-    Ok(best)
+    best
 }
 
 /// Meshes with vessels that overlap or touch fused if the network was to be refined, and no attempt gave a valid mesh.

@@ -50,28 +50,36 @@ fn ends(output: &Output, code: i32, start: &str) -> String {
     said
 }
 
-#[test]
-fn windings_that_touch_are_one_lumen_and_the_verdict_says_so() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("a.vtu");
+/// Helix of radius 1 around a circle, which rises by `rise` in .2 radians.
+fn helix(folder: &TempDir, around: f64, rise: f64) -> PathBuf {
     let mut swc = Swc::default();
     let at = |i: u32| {
         let (sine, cosine) = (0.2 * f64::from(i)).sin_cos();
-        [1.47 * cosine, 1.47 * sine, 0.070_646 * f64::from(i)]
+        [around * cosine, around * sine, rise * f64::from(i)]
     };
     for i in 0..150 {
         let parent = (i > 0).then(|| swc.count + 10);
         swc.line(at(i), at(i + 1), 1.0, 10.0, parent);
     }
-    let network = swc.save(&folder, "helix.swc");
-    let said = ends(
-        &mesh(&network, &out, &["--refine"]),
-        GATE_NOT_MET,
-        "not faithful: separate vessels fused into one lumen in 1 block",
-    );
+    swc.save(folder, "helix.swc")
+}
+
+#[test]
+fn windings_that_touch_are_one_lumen_and_the_verdict_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("a.vtu");
+    let made = mesh(&helix(&folder, 1.47, 0.070_646), &out, &["--refine"]);
+    let said = ends(&made, GATE_NOT_MET, "not faithful: separate vessels fused into one lumen in 1 block");
     assert!(said.contains("those that overlap or touch were meshed as one lumen"), "{said}");
-    let checked = run("check", &[&out], &[]);
-    assert_code(&checked, FINE);
+    assert_code(&run("check", &[&out], &[]), FINE);
+}
+
+#[test]
+fn windings_that_almost_touch_are_meshed_with_finer_edges() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = mesh(&helix(&folder, 1.532_655, 0.069_735), &folder.path().join("a.vtu"), &["--refine"]);
+    let said = ends(&made, FINE, "valid");
+    assert!(said.contains("meshed with finer edges, rho 6"), "{said}");
 }
 
 /// Two thick vessels side by side, and a thin one from the first to the wall of the second, without space for a cap.
