@@ -82,6 +82,7 @@ fn a_whole_in_a_work_directory_is_read_again_without_its_network() {
         gather(&whole).expect("read")
     };
     assert!(given.patches.iter().filter(|patch| patch.cap.is_some()).count() == 4);
+    assert!(LeftWhole::may_be_in(folder.path()));
     let left = LeftWhole::open(folder.path()).expect("there");
     assert_eq!(gather(&left.whole(&())).expect("read"), given);
     // Other counts than those of the parts are found, and so is a file that is cut off.
