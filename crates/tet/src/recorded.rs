@@ -4,11 +4,11 @@
 use std::fmt::Write;
 
 use super::delaunay::hash;
-use super::recover::exact::shapes::{chazelle, fan, scatter, sheet, twisted_prism};
+use super::recover::exact::shapes::{chazelle, dangling, fan, sheet, twisted_prism};
 use super::tests::{cube, joined, tube};
 use super::turned_tests::{Rng, plate, rows, split, turned};
 use super::*;
-use anastomesh_mesh::geometry::{Point3, Vec3};
+use anastomesh_mesh::geometry::Vec3;
 use anastomesh_mesh::shapes::{sphere_surface, torus_surface};
 
 /// Hash of all points and tetrahedra, bit for bit.
@@ -71,18 +71,7 @@ fn surfaces() -> Vec<(&'static str, TriMesh)> {
 
 /// Facets and segments among scattered points in a box.
 fn complex() -> Plc {
-    let mut points = scatter(200);
-    let mut place = |x: f64, y: f64, z: f64| {
-        points.push(Point3::new(x, y, z));
-        points.len() as u32 - 1
-    };
-    let (mut segments, mut triangles) = (Vec::new(), Vec::new());
-    for k in 0..4 {
-        let z = 0.1 + 0.2 * f64::from(k);
-        segments.push([place(-0.2, 0.51, z), place(1.2, 0.503, z + 0.01)]);
-        triangles.push([(-0.1, -0.1), (1.1, -0.1), (0.4, 0.46)].map(|(x, y)| place(x, y, z + 0.003)));
-    }
-    let facets = TriMesh { points, triangles };
+    let (facets, segments) = dangling(200, 4, 0.2);
     let mut plc = Plc::from(&joined(facets, &cube(2), 1.5, Vec3::repeat(-1.0)));
     plc.segments = segments;
     plc

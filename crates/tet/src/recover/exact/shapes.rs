@@ -105,3 +105,19 @@ pub(crate) fn scatter(n: u64) -> Vec<Point3> {
     let coin = |k: u64| (crate::delaunay::hash(k) >> 11) as f64 / (1u64 << 53) as f64;
     (0..n).map(|k| Point3::new(coin(3 * k), coin(3 * k + 1), coin(3 * k + 2))).collect()
 }
+
+/// Segments and facets on several levels, among scattered points. They are no closed surface.
+pub(crate) fn dangling(scattered: u64, levels: u32, step: f64) -> (TriMesh, Vec<[u32; 2]>) {
+    let mut points = scatter(scattered);
+    let mut place = |x: f64, y: f64, z: f64| {
+        points.push(Point3::new(x, y, z));
+        points.len() as u32 - 1
+    };
+    let (mut segments, mut triangles) = (Vec::new(), Vec::new());
+    for k in 0..levels {
+        let z = 0.1 + step * f64::from(k);
+        segments.push([place(-0.2, 0.51, z), place(1.2, 0.503, z + 0.01)]);
+        triangles.push([(-0.1, -0.1), (1.1, -0.1), (0.4, 0.46)].map(|(x, y)| place(x, y, z + 0.003)));
+    }
+    (TriMesh { points, triangles }, segments)
+}

@@ -1,4 +1,4 @@
-use super::shapes::{chazelle, fan, scatter, sheet, twisted_prism};
+use super::shapes::{chazelle, dangling, fan, scatter, sheet, twisted_prism};
 use super::*;
 use crate::delaunay::delaunay;
 use crate::error::Obstacle;
@@ -204,18 +204,7 @@ fn facets_that_edges_pierce_are_recovered() {
 
 #[test]
 fn segments_and_facets_that_dangle_are_recovered() {
-    let mut points = scatter(300);
-    let mut place = |x: f64, y: f64, z: f64| {
-        points.push(Point3::new(x, y, z));
-        points.len() as u32 - 1
-    };
-    let (mut segments, mut triangles) = (Vec::new(), Vec::new());
-    for k in 0..5 {
-        let z = 0.1 + 0.15 * f64::from(k);
-        segments.push([place(-0.2, 0.51, z), place(1.2, 0.503, z + 0.01)]);
-        triangles.push([(-0.1, -0.1), (1.1, -0.1), (0.4, 0.46)].map(|(x, y)| place(x, y, z + 0.003)));
-    }
-    let surface = TriMesh { points, triangles };
+    let (surface, segments) = dangling(300, 5, 0.15);
     let summary = fills(&surface, &segments, InputKind::Plc).unwrap();
     assert!(summary.on_segments > 20 && summary.on_facets > 20, "{summary:?}");
 }
