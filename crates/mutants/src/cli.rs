@@ -1,0 +1,190 @@
+//! Command line.
+
+use crate::build::{Program, Tree};
+use crate::list::{self, Mutant};
+use crate::parts::{Part, copy_tree};
+use crate::tests::{self, Outcome, Test};
+use serde_json::{Value, json};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+const HELP: &str = "\
+Mutation tests. cargo-mutants lists the mutants; all of a run are compiled once, and each is chosen when a test runs. A
+mutant is tried with the tests that reach it, those of its module first.
+
+Usage: anastomesh-mutants [OPTIONS] --part NAME=PREFIX[,PREFIX...]...
+
+  --part NAME=PREFIXES  Mutants of the files whose paths begin with one of the prefixes; may be repeated
+  --package NAME        Package whose tests are run; may be repeated
+  --out DIR             Copy of the sources, build and results (default target/mutants)
+  --limit N             Mutants of a part: every n-th if it has more (default 100000)
+  --budget SECONDS      Time of the tests of a mutant without it, at most (default 30)
+  --jobs N              Mutants at the same time (default 1)
+
+Each part has a file OUT/NAME.json, with outcomes as in outcomes.json of cargo-mutants.";
+
+/// Outcome of mutants that cannot be chosen when a test runs.
+const NOT_TRIED: &str = "";
+
+struct Options {
+    parts: Vec<Part>,
+    packages: Vec<String>,
+    out: PathBuf,
+    limit: usize,
+    budget: Duration,
+    jobs: usize,
+}
+
+fn options(arguments: &[String]) -> Option<Options> {
+    let mut options = Options {
+        parts: Vec::new(),
+        packages: Vec::new(),
+        out: "target/mutants".into(),
+        limit: 100_000,
+        budget: Duration::from_secs(30),
+        jobs: 1,
+    };
+    for pair in arguments.chunks(2) {
+        let [name, value] = pair else { return None };
+        match name.as_str() {
+            "--part" => options.parts.push(Part::parse(value)?),
+            "--package" => options.packages.push(value.clone()),
+            "--out" => options.out = value.into(),
+            "--limit" => options.limit = value.parse().ok()?,
+            "--budget" => options.budget = Duration::from_secs(value.parse().ok()?),
+            "--jobs" => options.jobs = value.parse().ok()?,
+            _ => return None,
+        }
+    }
+    (!options.parts.is_empty() && !options.packages.is_empty()).then_some(options)
+}
+
+/// Runs the program with these arguments.
+///
+/// # Errors
+///
+/// The arguments are wrong, or the sources cannot be built.
+pub fn run(arguments: &[String]) -> io::Result<()> {
+    let Some(options) = options(arguments) else {
+        println!("{HELP}");
+        return if arguments.iter().any(|argument| argument == "--help") {
+            Ok(())
+        } else {
+            Err(io::Error::other("unknown or missing arguments: see above"))
+        };
+    };
+    fs::create_dir_all(&options.out)?;
+    let out = options.out.canonicalize()?;
+    let (root, target) = (out.join("tree"), out.join("build"));
+    copy_tree(Path::new("."), &root)?;
+    let all = list::mutants(&root)?;
+    let samples: Vec<(&Part, Vec<usize>, usize)> = options
+        .parts
+        .iter()
+        .map(|part| {
+            let (sample, of) = part.sample(&all, options.limit);
+            (part, sample, of)
+        })
+        .collect();
+    let chosen: BTreeSet<usize> = samples.iter().flat_map(|(_, sample, _)| sample).copied().collect();
+    let mutants: Vec<Mutant> = chosen.iter().map(|&i| all[i].clone()).collect();
+    let mut tree = Tree::new(&root, &target, &mutants)?;
+    let programs = tree.programs(&options.packages)?;
+    eprintln!(
+        "{} mutants, of which {} do not compile; {} test programs",
+        mutants.len(),
+        tree.unviable.len(),
+        programs.len()
+    );
+    let tests = record(&programs, &out)?;
+    let outcomes = try_all(&mutants, &tree, &programs, &tests, &options)?;
+    for (part, sample, of) in samples {
+        let of_part: Vec<Value> = (0..mutants.len())
+            .zip(&chosen)
+            .filter(|(id, i)| sample.contains(i) && outcomes[*id] != NOT_TRIED)
+            .map(|(id, _)| json!({"summary": outcomes[id], "scenario": {"Mutant": {"name": mutants[id].name}}}))
+            .collect();
+        let count = |summary: &str| of_part.iter().filter(|outcome| outcome["summary"] == summary).count();
+        let (caught, missed) = (count("CaughtMutant") + count("Timeout"), count("MissedMutant"));
+        println!("{}: {} of {of} tried, {caught} caught, {missed} missed", part.name, of_part.len());
+        fs::write(out.join(format!("{}.json", part.name)), json!({"outcomes": of_part, "of": of}).to_string())?;
+    }
+    Ok(())
+}
+
+/// All tests that pass without a mutant.
+fn record(programs: &[Program], out: &Path) -> io::Result<Vec<Test>> {
+    let mut all = Vec::new();
+    let start = Instant::now();
+    for (number, program) in programs.iter().enumerate() {
+        for name in tests::names(program)? {
+            match tests::recorded(programs, number, &name, &out.join("reached"))? {
+                Some(test) => all.push(test),
+                None => eprintln!("{} {name} fails without a mutant, and is not run", program.package),
+            }
+        }
+    }
+    eprintln!("{} tests in {:.0} s", all.len(), start.elapsed().as_secs_f64());
+    Ok(all)
+}
+
+/// Outcome of each mutant, by the names of cargo-mutants.
+fn try_all(
+    mutants: &[Mutant],
+    tree: &Tree<'_>,
+    programs: &[Program],
+    tests: &[Test],
+    options: &Options,
+) -> io::Result<Vec<&'static str>> {
+    let untried = |id: u32| if tree.unviable.contains(&id) { "Unviable" } else { NOT_TRIED };
+    let outcomes = Mutex::new((0..).zip(mutants).map(|(id, _)| untried(id)).collect::<Vec<_>>());
+    let (next, start) = (AtomicUsize::new(0), Instant::now());
+    let work = || -> io::Result<()> {
+        loop {
+            let id = next.fetch_add(1, Ordering::Relaxed);
+            let Some(mutant) = mutants.get(id) else { return Ok(()) };
+            let number = id as u32;
+            if !tree.built.contains(&number) {
+                continue;
+            }
+            let reaching = in_order(mutant, number, tests);
+            let summary = match tests::tried(programs, &reaching, number, options.budget)? {
+                Outcome::Caught => "CaughtMutant",
+                Outcome::Timeout => "Timeout",
+                Outcome::Missed => "MissedMutant",
+            };
+            if summary != "CaughtMutant" {
+                eprintln!(
+                    "{:.0} s: {summary} {} ({} tests)",
+                    start.elapsed().as_secs_f64(),
+                    mutant.name,
+                    reaching.len()
+                );
+            }
+            if let Ok(mut outcomes) = outcomes.lock() {
+                outcomes[id] = summary;
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..options.jobs.max(1)).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|_| Err(io::Error::other("a panic"))))
+    })?;
+    outcomes.into_inner().map_err(|_| io::Error::other("a panic"))
+}
+
+/// Tests that reach a mutant: those of its module first, then short ones.
+fn in_order<'t>(mutant: &Mutant, number: u32, tests: &'t [Test]) -> Vec<&'t Test> {
+    let inside = mutant.file.rsplit_once("src/").map_or("", |(_, inside)| inside);
+    let modules = inside.trim_end_matches(".rs").replace('/', "::");
+    let common = |test: &Test| modules.split("::").zip(test.name.split("::")).take_while(|(a, b)| a == b).count();
+    let mut reaching: Vec<&Test> = tests.iter().filter(|test| test.reaches.contains(&number)).collect();
+    reaching.sort_by_key(|test| (Reverse(common(test)), test.time));
+    reaching
+}
