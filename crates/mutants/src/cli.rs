@@ -3,7 +3,7 @@
 use crate::build::{Program, Tree};
 use crate::list::{self, Mutant};
 use crate::parts::{Part, copy_tree};
-use crate::tests::{self, Outcome, Test};
+use crate::trial::{self, Outcome, Test};
 use serde_json::{Value, json};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -123,8 +123,8 @@ fn record(programs: &[Program], out: &Path) -> io::Result<Vec<Test>> {
     let mut all = Vec::new();
     let start = Instant::now();
     for (number, program) in programs.iter().enumerate() {
-        for name in tests::names(program)? {
-            match tests::recorded(programs, number, &name, &out.join("reached"))? {
+        for name in trial::names(program)? {
+            match trial::recorded(programs, number, &name, &out.join("reached"))? {
                 Some(test) => all.push(test),
                 None => eprintln!("{} {name} fails without a mutant, and is not run", program.package),
             }
@@ -154,7 +154,7 @@ fn try_all(
                 continue;
             }
             let reaching = in_order(mutant, number, tests);
-            let summary = match tests::tried(programs, &reaching, number, options.budget)? {
+            let summary = match trial::tried(programs, &reaching, number, options.budget)? {
                 Outcome::Caught => "CaughtMutant",
                 Outcome::Timeout => "Timeout",
                 Outcome::Missed => "MissedMutant",

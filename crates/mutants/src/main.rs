@@ -5,7 +5,7 @@ mod cli;
 mod list;
 mod parts;
 mod rewrite;
-mod tests;
+mod trial;
 
 use std::process::ExitCode;
 

@@ -22,7 +22,7 @@ Commands:
   kinds             List all kinds
   page              Compact the state file, and write the page of results
   gate              Compare the newest build with earlier ones
-  add mutants PART OUTCOMES    Record figures of cargo-mutants: its file outcomes.json
+  add mutants PART OUTCOMES    Record figures of anastomesh-mutants
   add coverage FILE            Record figures of `cargo llvm-cov report --json --summary-only`
   add fuzz TARGET LOG          Record figures of libFuzzer: a log with `-print_final_stats=1`
   add predicates FILE          Record figures of the example `predicates`
@@ -40,7 +40,6 @@ Options:
   --findings DIR    Folder for findings [default: target/trials/findings]
   --scratch DIR     Folder for running cases [default: target/trials/scratch]
   --page FILE       Page of results [default: docs/trust.md]
-  --of N            Number of mutants of which those of `add mutants` are a sample
 
 Exit codes: 0 no findings, 1 at least one, 2 bad arguments, 3 a file cannot be used
 ";
@@ -49,7 +48,6 @@ struct Args {
     words: Vec<String>,
     settings: Settings,
     page: PathBuf,
-    of: Option<u64>,
 }
 
 /// Runs the program `anastomesh-trials`.
@@ -96,7 +94,7 @@ fn defaults() -> Args {
         shrink_time: Duration::from_secs(60),
         jobs: 1,
     };
-    Args { words: Vec::new(), settings, page: "docs/trust.md".into(), of: None }
+    Args { words: Vec::new(), settings, page: "docs/trust.md".into() }
 }
 
 fn parse(words: Vec<String>) -> Result<Args, String> {
@@ -123,7 +121,6 @@ fn parse(words: Vec<String>) -> Result<Args, String> {
             "--findings" => settings.findings = value.into(),
             "--scratch" => settings.scratch = value.into(),
             "--page" => args.page = value.into(),
-            "--of" => args.of = Some(number()? as u64),
             _ => return Err(format!("unknown option {word}")),
         }
     }
@@ -151,7 +148,7 @@ fn command(args: &Args) -> io::Result<Option<u8>> {
             Ok(Some(0))
         }
         ["page"] => write_page(&settings, &args.page).map(|()| Some(0)),
-        ["add", ref figures @ ..] => figures::add(figures, args.of, &settings.state),
+        ["add", ref figures @ ..] => figures::add(figures, &settings.state),
         ["gate"] => {
             let worse = gate::compare(&state::read(&settings.state)?);
             for line in &worse {

@@ -7,17 +7,20 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Missed mutants of a part that are kept with their names.
-const NAMES: usize = 20;
+/// Missed mutants of a part without a reason that are kept with their names.
+const NAMES: usize = 40;
+
+/// Reasons why mutants stay: lines `NAME: REASON`, where the name has no line and column.
+const REASONS: &str = "crates/mutants/survivors.txt";
 
 /// Reads the output of another program, and appends its figures to the state file. `None` if the words are no command.
-pub fn add(words: &[&str], of: Option<u64>, state: &Path) -> io::Result<Option<u8>> {
+pub fn add(words: &[&str], state: &Path) -> io::Result<Option<u8>> {
     let read = |file: &str| {
         let text = fs::read(file).map_err(|e| io::Error::other(format!("{file}: {e}; name a readable file")))?;
         Ok::<_, io::Error>(String::from_utf8_lossy(&text).into_owned())
     };
     let (file, figures) = match *words {
-        ["mutants", part, file] => (file, mutants(part, &read(file)?, of).map(|figure| vec![figure])),
+        ["mutants", part, file] => (file, mutants(part, &read(file)?, &read(REASONS)?).map(|figure| vec![figure])),
         ["coverage", file] => (file, coverage(&read(file)?).map(|figure| vec![figure])),
         ["fuzz", target, file] => (file, fuzz(target, &read(file)?).map(|figure| vec![figure])),
         ["predicates", file] => (file, Some(predicates(&read(file)?)).filter(|figures| !figures.is_empty())),
@@ -70,26 +73,34 @@ pub fn number(figure: &Value, key: &str) -> u64 {
     figure[key].as_u64().unwrap_or(0)
 }
 
-/// Figures of `mutants.out/outcomes.json` of cargo-mutants. `of` is the number of mutants of which these are a sample.
-fn mutants(part: &str, text: &str, of: Option<u64>) -> Option<Value> {
+/// Figures of a file of anastomesh-mutants, which has outcomes as cargo-mutants writes them. `of` is the number of mutants
+/// of which these are a sample.
+fn mutants(part: &str, text: &str, reasons: &str) -> Option<Value> {
     let json: Value = serde_json::from_str(text).ok()?;
-    // The outcome without a mutant has the scenario "Baseline".
     let outcomes: Vec<(&str, &str)> = json["outcomes"]
         .as_array()?
         .iter()
         .filter_map(|o| Some((o["summary"].as_str()?, o["scenario"]["Mutant"]["name"].as_str()?)))
         .collect();
     let count = |summary: &str| outcomes.iter().filter(|(s, _)| *s == summary).count();
-    let tried = outcomes.len() as u64;
-    let missed = count("MissedMutant");
-    let names: Vec<&str> = outcomes.iter().filter(|(s, _)| *s == "MissedMutant").map(|(_, name)| *name).collect();
-    (tried > 0).then(|| {
+    let missed: Vec<&str> = outcomes.iter().filter(|(s, _)| *s == "MissedMutant").map(|(_, name)| *name).collect();
+    let names: Vec<&str> = missed.iter().copied().filter(|name| !has_reason(name, reasons)).collect();
+    (!outcomes.is_empty()).then(|| {
         json!({
-            "figure": "mutants", "part": part, "tried": tried, "of": of.unwrap_or(tried).max(tried),
-            "caught": count("CaughtMutant"), "missed": missed, "timeouts": count("Timeout"),
-            "unviable": count("Unviable"), "names": if missed <= NAMES { names } else { Vec::new() },
+            "figure": "mutants", "part": part, "tried": outcomes.len(), "of": json["of"],
+            "caught": count("CaughtMutant"), "missed": missed.len(), "explained": missed.len() - names.len(),
+            "timeouts": count("Timeout"), "unviable": count("Unviable"),
+            "names": if names.len() <= NAMES { names } else { Vec::new() },
         })
     })
+}
+
+/// True if a line has the name without `:LINE:COLUMN`, then `: `.
+fn has_reason(name: &str, reasons: &str) -> bool {
+    let Some((place, change)) = name.split_once(": ") else { return false };
+    let Some(file) = place.rsplitn(3, ':').last() else { return false };
+    let short = format!("{file}: {change}: ");
+    reasons.lines().any(|line| line.starts_with(&short))
 }
 
 /// Figures of `cargo llvm-cov report --json --summary-only`: lines and covered lines of each folder.
@@ -154,23 +165,23 @@ mod tests {
     fn outcomes_of_mutants_are_counted() {
         let outcome = |summary: &str, name: &str| json!({"scenario": {"Mutant": {"name": name}}, "summary": summary});
         let outcomes = [
-            json!({"scenario": "Baseline", "summary": "Success"}),
             outcome("CaughtMutant", "src/a.rs:1:1: replace f with ()"),
             outcome("MissedMutant", "src/a.rs:2:1: replace < with <= in f"),
+            outcome("MissedMutant", "src/a.rs:5:1: replace > with >= in f"),
             outcome("Timeout", "src/a.rs:3:1: replace += with -= in f"),
             outcome("Unviable", "src/a.rs:4:1: replace g with Default::default()"),
         ];
-        let text = json!({"outcomes": outcomes, "total_mutants": 4}).to_string();
+        let text = json!({"outcomes": outcomes, "of": 40}).to_string();
         let expected = json!({
-            "figure": "mutants", "part": "verify", "tried": 4, "of": 40, "caught": 1, "missed": 1, "timeouts": 1,
-            "unviable": 1, "names": ["src/a.rs:2:1: replace < with <= in f"],
+            "figure": "mutants", "part": "verify", "tried": 5, "of": 40, "caught": 1, "missed": 2, "explained": 1,
+            "timeouts": 1, "unviable": 1, "names": ["src/a.rs:2:1: replace < with <= in f"],
         });
-        assert_eq!(mutants("verify", &text, Some(40)), Some(expected));
-        assert_eq!(mutants("verify", &text, None).map(|figure| number(&figure, "of")), Some(4));
+        let reasons = "src/a.rs: replace > with >= in f: speed only\nsrc/b.rs: replace < with <= in f: equal\n";
+        assert_eq!(mutants("verify", &text, reasons), Some(expected));
         let many: Vec<Value> = (0..=NAMES).map(|i| outcome("MissedMutant", &format!("{i}"))).collect();
-        let many = mutants("verify", &json!({"outcomes": many}).to_string(), None).expect("a figure");
-        assert_eq!((number(&many, "missed"), &many["names"]), (21, &json!([])));
-        assert_eq!(mutants("verify", &json!({"outcomes": &outcomes[..1]}).to_string(), None), None);
+        let many = mutants("verify", &json!({"outcomes": many, "of": 41}).to_string(), "").expect("a figure");
+        assert_eq!((number(&many, "missed"), &many["names"]), (41, &json!([])));
+        assert_eq!(mutants("verify", r#"{"outcomes": [], "of": 0}"#, ""), None);
     }
 
     #[test]
@@ -224,10 +235,10 @@ mod tests {
         let [state, file] = ["trust.jsonl", "out.txt"].map(|name| folder.path().join(name));
         fs::write(&file, "orient3d: 10 compared with exact integers, 0 differ, 1 zero\n").expect("written");
         let words = ["predicates", file.to_str().expect("a name")];
-        assert_eq!(add(&words, None, &state).expect("added"), Some(0));
+        assert_eq!(add(&words, &state).expect("added"), Some(0));
         assert_eq!(number(&read(&state).expect("read")[0], "compared"), 10);
-        assert_eq!(add(&["none"], None, &state).expect("no command"), None);
+        assert_eq!(add(&["none"], &state).expect("no command"), None);
         fs::write(&file, "").expect("written");
-        assert!(add(&words, None, &state).expect_err("no figures").to_string().contains("no figures of predicates"));
+        assert!(add(&words, &state).expect_err("no figures").to_string().contains("no figures of predicates"));
     }
 }

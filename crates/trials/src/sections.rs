@@ -39,23 +39,26 @@ fn mutation(figures: &[&Value]) -> String {
         "## Mutation\n\n\
          Each mutant is a small change of the sources. The tests should fail with it. The score is the share of mutants with which they \
          fail or\ntake too long. Mutants that do not compile are not counted. A score of a sample has an interval of 95 % confidence.\n\
-         If tests were added for missed mutants of a sample, its score is above that of the other mutants.\n\n\
-         Command: `PACKAGE=anastomesh-verify SHARD=0/1 .ci/long mutants`\n\n\
-         | part | tried | of | caught | missed | timeouts | unviable | score, % | day |\n|---|---|---|---|---|---|---|---|---|\n",
+         `anastomesh-mutants` tries each mutant with the tests of the workspace that reach it. Mutants that cannot be caught, such as\n\
+         those that change only the speed, have a reason in [survivors.txt](../crates/mutants/survivors.txt). They count as missed.\n\n\
+         Command: `.ci/long mutants`, or `PARTS=\"check store\" .ci/long mutants` for some parts\n\n\
+         | part | tried | of | caught | timeouts | missed | of these with a reason | unviable | score, % | day |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for figure in figures {
-        let numbers = ["tried", "of", "caught", "missed", "timeouts", "unviable"].map(|key| number(figure, key));
+        let numbers =
+            ["tried", "of", "caught", "timeouts", "missed", "explained", "unviable"].map(|key| number(figure, key));
         let cells = numbers.map(grouped).join(" | ");
         let _ = writeln!(out, "| {} | {cells} | {} | {} |", code_span(part(figure)), score(numbers), day(figure));
     }
-    for figure in figures.iter().filter(|figure| number(figure, "missed") > 0) {
+    for figure in figures.iter().filter(|figure| number(figure, "missed") > number(figure, "explained")) {
         out += &missed(figure);
     }
     out
 }
 
 /// Score in percent, with its interval if the mutants are a sample.
-fn score([tried, of, caught, missed, timeouts, _]: [u64; 6]) -> String {
+fn score([tried, of, caught, timeouts, missed, ..]: [u64; 7]) -> String {
     let (part, whole) = (caught + timeouts, caught + timeouts + missed);
     if whole == 0 {
         return "–".into();
@@ -79,9 +82,9 @@ fn wilson(part: u64, whole: u64) -> [f64; 2] {
 
 fn missed(figure: &Value) -> String {
     let names = figure["names"].as_array().map_or(&[][..], Vec::as_slice);
-    let title = format!("\nMissed mutants of {}", code_span(part(figure)));
+    let title = format!("\nMissed mutants of {} without a reason", code_span(part(figure)));
     if names.is_empty() {
-        return format!("{title}: {}\n", grouped(number(figure, "missed")));
+        return format!("{title}: {}\n", grouped(number(figure, "missed") - number(figure, "explained")));
     }
     let lines = names.iter().filter_map(Value::as_str).map(|name| format!("- `{}`\n", name.replace('`', "'")));
     format!("{title}:\n\n{}", lines.collect::<String>())
@@ -158,7 +161,7 @@ mod tests {
     fn each_figure_has_a_row() {
         assert_eq!(text(&[]), "");
         let figures = [
-            json!({"figure": "mutants", "part": "a", "tried": 100, "of": 1000, "caught": 79, "missed": 10, "timeouts": 1, "unviable": 10, "names": ["f | g"], "date": "d"}),
+            json!({"figure": "mutants", "part": "a", "tried": 100, "of": 1000, "caught": 79, "missed": 10, "explained": 9, "timeouts": 1, "unviable": 10, "names": ["f | g"], "date": "d"}),
             json!({"figure": "mutants", "part": "b", "tried": 3, "of": 3, "caught": 2, "missed": 1, "names": [], "date": "d"}),
             json!({"figure": "coverage", "folders": {"crates/tet/src": [10, 5], "crates/tet/src/refine": [30, 30], "src": [10, 1]}}),
             json!({"figure": "fuzz", "part": "off", "executions": 1_200_000, "edges": 500, "findings": 0, "date": "d"}),
@@ -166,10 +169,10 @@ mod tests {
         ];
         let page = text(&figures);
         for row in [
-            "| `a` | 100 | 1,000 | 79 | 10 | 1 | 10 | 88.9 (80.7 to 93.9) | d |",
-            "Missed mutants of `a`:\n\n- `f | g`\n",
-            "| `b` | 3 | 3 | 2 | 1 | 0 | 0 | 66.7 | d |",
-            "Missed mutants of `b`: 1\n",
+            "| `a` | 100 | 1,000 | 79 | 1 | 10 | 9 | 10 | 88.9 (80.7 to 93.9) | d |",
+            "Missed mutants of `a` without a reason:\n\n- `f | g`\n",
+            "| `b` | 3 | 3 | 2 | 0 | 1 | 0 | 0 | 66.7 | d |",
+            "Missed mutants of `b` without a reason: 1\n",
             "| **all crates** | 50 | 36 | 72.0 |\n| **anastomesh** | 10 | 1 | 10.0 |\n| `src` | 10 | 1 | 10.0 |\n| **anastomesh-tet** | 40 | 35 | 87.5 |\n| `crates/tet/src` | 10 | 5 | 50.0 |\n",
             "| off | 1,200,000 | 500 | 0 | d |",
             "| orient3d | 1,000 | 0 | 7 | d |",
