@@ -102,7 +102,7 @@ pub fn run(arguments: &[String]) -> io::Result<()> {
         tree.unviable.len(),
         programs.len()
     );
-    let tests = record(&programs, &out)?;
+    let tests = record(&programs, &out, options.jobs)?;
     let outcomes = try_all(&mutants, &tree, &programs, &tests, &options)?;
     for (part, sample, of) in samples {
         let of_part: Vec<Value> = (0..mutants.len())
@@ -119,19 +119,46 @@ pub fn run(arguments: &[String]) -> io::Result<()> {
 }
 
 /// All tests that pass without a mutant.
-fn record(programs: &[Program], out: &Path) -> io::Result<Vec<Test>> {
-    let mut all = Vec::new();
+fn record(programs: &[Program], out: &Path, jobs: usize) -> io::Result<Vec<Test>> {
     let start = Instant::now();
+    let mut names: Vec<(usize, String)> = Vec::new();
     for (number, program) in programs.iter().enumerate() {
-        for name in trial::names(program)? {
-            match trial::recorded(programs, number, &name, &out.join("reached"))? {
-                Some(test) => all.push(test),
-                None => eprintln!("{} {name} fails without a mutant, and is not run", program.package),
-            }
-        }
+        names.extend(trial::names(program)?.into_iter().map(|name| (number, name)));
     }
+    let all = Mutex::new(Vec::new());
+    in_parallel(jobs, names.len(), |i| {
+        let (number, name) = &names[i];
+        match trial::recorded(programs, *number, name, &out.join(format!("reached{i}")))? {
+            Some(test) => all.lock().map_err(|_| panicked())?.push(test),
+            None => eprintln!("{} {name} fails without a mutant, and is not run", programs[*number].package),
+        }
+        Ok(())
+    })?;
+    let all = all.into_inner().map_err(|_| panicked())?;
     eprintln!("{} tests in {:.0} s", all.len(), start.elapsed().as_secs_f64());
     Ok(all)
+}
+
+/// Calls a function with all numbers below `count`, in `jobs` threads.
+fn in_parallel(jobs: usize, count: usize, call: impl Fn(usize) -> io::Result<()> + Sync) -> io::Result<()> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= count {
+                return Ok(());
+            }
+            call(i)?;
+        }
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..jobs.max(1)).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|_| Err(panicked())))
+    })
+}
+
+fn panicked() -> io::Error {
+    io::Error::other("a thread panicked")
 }
 
 /// Outcome of each mutant, by the names of cargo-mutants.
@@ -144,39 +171,25 @@ fn try_all(
 ) -> io::Result<Vec<&'static str>> {
     let untried = |id: u32| if tree.unviable.contains(&id) { "Unviable" } else { NOT_TRIED };
     let outcomes = Mutex::new((0..).zip(mutants).map(|(id, _)| untried(id)).collect::<Vec<_>>());
-    let (next, start) = (AtomicUsize::new(0), Instant::now());
-    let work = || -> io::Result<()> {
-        loop {
-            let id = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutant) = mutants.get(id) else { return Ok(()) };
-            let number = id as u32;
-            if !tree.built.contains(&number) {
-                continue;
-            }
-            let reaching = in_order(mutant, number, tests);
-            let summary = match trial::tried(programs, &reaching, number, options.budget)? {
-                Outcome::Caught => "CaughtMutant",
-                Outcome::Timeout => "Timeout",
-                Outcome::Missed => "MissedMutant",
-            };
-            if summary != "CaughtMutant" {
-                eprintln!(
-                    "{:.0} s: {summary} {} ({} tests)",
-                    start.elapsed().as_secs_f64(),
-                    mutant.name,
-                    reaching.len()
-                );
-            }
-            if let Ok(mut outcomes) = outcomes.lock() {
-                outcomes[id] = summary;
-            }
+    let start = Instant::now();
+    in_parallel(options.jobs, mutants.len(), |id| {
+        let (mutant, number) = (&mutants[id], id as u32);
+        if !tree.built.contains(&number) {
+            return Ok(());
         }
-    };
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..options.jobs.max(1)).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|_| Err(io::Error::other("a panic"))))
+        let reaching = in_order(mutant, number, tests);
+        let summary = match trial::tried(programs, &reaching, number, options.budget)? {
+            Outcome::Caught => "CaughtMutant",
+            Outcome::Timeout => "Timeout",
+            Outcome::Missed => "MissedMutant",
+        };
+        if summary != "CaughtMutant" {
+            eprintln!("{:.0} s: {summary} {} ({} tests)", start.elapsed().as_secs_f64(), mutant.name, reaching.len());
+        }
+        outcomes.lock().map_err(|_| panicked())?[id] = summary;
+        Ok(())
     })?;
-    outcomes.into_inner().map_err(|_| io::Error::other("a panic"))
+    outcomes.into_inner().map_err(|_| panicked())
 }
 
 /// Tests that reach a mutant: those of its module first, then short ones.

@@ -49,11 +49,11 @@ pub fn names(program: &Program) -> io::Result<Vec<String>> {
 ///
 /// The test cannot be run, or `log` cannot be read.
 pub fn recorded(programs: &[Program], program: usize, name: &str, log: &Path) -> io::Result<Option<Test>> {
-    let _ = fs::remove_file(log);
     let start = Instant::now();
     let status = run(&programs[program], name, "record", log, Duration::from_secs(300))?;
     let time = start.elapsed();
     let bytes = if log.exists() { fs::read(log)? } else { Vec::new() };
+    let _ = fs::remove_file(log);
     let reaches = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     Ok(status.success().then(|| Test { program, name: name.to_owned(), time, reaches }))
 }
