@@ -66,4 +66,26 @@ mod tests {
         assert_eq!(around(tip.section.radius), Vec::<u32>::new());
         assert_eq!(around(tip.section.radius + 0.51), [i]);
     }
+
+    #[test]
+    fn a_vessel_does_not_bury_its_own_tip() {
+        let mut end = bifurcation(3).ends[0].clone();
+        end.section.origin = Point3::origin();
+        end.section.radius = 1.0;
+        let tube = |a: [f64; 3], b: [f64; 3], radius: f64| Tube { a: a.into(), b: b.into(), ra: radius, rb: radius };
+        // The wide part of the vessel returns to its tip. The tube beyond the end touches the tip, too.
+        let mut tubes = vec![
+            tube([20.0, 0.0, 0.0], [30.0, 0.0, 0.0], 1.0),
+            tube([0.0; 3], [8.0, 0.0, 0.0], 1.0),
+            tube([0.0; 3], [-4.0, 0.0, 0.0], 1.0),
+            tube([8.0, 0.0, 0.0], [8.0, 6.0, 0.0], 3.0),
+            tube([8.0, 6.0, 0.0], [0.0, 1.0, 0.0], 3.0),
+        ];
+        let beyond = [false, false, true, false, false, false];
+        assert_eq!(own_vessel(&tubes, &beyond, end.section.origin), [1, 3, 4]);
+        assert!(!is_buried(&tubes, &beyond, &end));
+        tubes.push(tube([8.0, 6.0, 0.0], [8.0, 20.0, 0.0], 1.0));
+        assert_eq!(own_vessel(&tubes, &beyond, end.section.origin), [1, 3]);
+        assert!(is_buried(&tubes, &beyond, &end));
+    }
 }

@@ -13,6 +13,9 @@ use std::process::{Command, Stdio};
 /// Builds without new errors, at most. Each finds the errors of one phase of the compiler.
 const ROUNDS: usize = 40;
 
+/// End of the names of packages of which only unit tests are run.
+const LIB: &str = ":lib";
+
 /// A copy of the sources that is rewritten.
 #[derive(Debug)]
 pub struct Tree<'a> {
@@ -57,7 +60,8 @@ impl<'a> Tree<'a> {
             eprintln!("build {round}: {} errors, {} mutants removed", errors.len(), wrong.len());
             if errors.is_empty() {
                 let messages = self.cargo(&["test", "--no-run"], packages)?;
-                return Ok(messages.iter().filter_map(program).collect());
+                let all = messages.iter().filter_map(program);
+                return Ok(all.filter(|program| is_chosen(program, packages)).collect());
             }
             if wrong.is_empty() {
                 return Err(io::Error::other(format!("errors without a mutant: {:?}", errors[0])));
@@ -103,7 +107,7 @@ impl<'a> Tree<'a> {
         let output = Command::new("cargo")
             .args(command)
             .arg("--message-format=json")
-            .args(packages.iter().flat_map(|package| ["-p", package]))
+            .args(packages.iter().flat_map(|package| ["-p", package.trim_end_matches(LIB)]))
             .current_dir(self.root)
             .env("CARGO_TARGET_DIR", self.target)
             .env("RUSTFLAGS", "--cap-lints=allow")
@@ -168,6 +172,13 @@ pub struct Program {
     pub folder: PathBuf,
     /// Name of its package.
     pub package: String,
+    /// True for unit tests of the library.
+    pub is_lib: bool,
+}
+
+fn is_chosen(program: &Program, packages: &[String]) -> bool {
+    packages.iter().any(|package| *package == program.package)
+        || (program.is_lib && packages.contains(&format!("{}{LIB}", program.package)))
 }
 
 fn program(message: &Value) -> Option<Program> {
@@ -181,5 +192,6 @@ fn program(message: &Value) -> Option<Program> {
         path: message["executable"].as_str()?.into(),
         folder: manifest.parent()?.into(),
         package: package.to_owned(),
+        is_lib: message["target"]["kind"].as_array()?.iter().any(|kind| kind == "lib"),
     })
 }

@@ -6,7 +6,7 @@ use crate::parts::{Part, copy_tree};
 use crate::trial::{self, Outcome, Test};
 use serde_json::{Value, json};
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,11 +21,12 @@ mutant is tried with the tests that reach it, those of its module first.
 Usage: anastomesh-mutants [OPTIONS] --part NAME=PREFIX[,PREFIX...]...
 
   --part NAME=PREFIXES  Mutants of the files whose paths begin with one of the prefixes; may be repeated
-  --package NAME        Package whose tests are run; may be repeated
+  --package NAME[:lib]  Package whose tests are run, or only its unit tests; may be repeated
   --out DIR             Copy of the sources, build and results (default target/mutants)
   --limit N             Mutants of a part: every n-th if it has more (default 100000)
   --budget SECONDS      Time of the tests of a mutant without it, at most (default 30)
   --jobs N              Mutants at the same time (default 1)
+  --earlier DIR         OUT of an earlier run: mutants that it caught are not tried again. Only if tests were added since
 
 Each part has a file OUT/NAME.json, with outcomes as in outcomes.json of cargo-mutants.";
 
@@ -39,6 +40,7 @@ struct Options {
     limit: usize,
     budget: Duration,
     jobs: usize,
+    earlier: Option<PathBuf>,
 }
 
 fn options(arguments: &[String]) -> Option<Options> {
@@ -49,6 +51,7 @@ fn options(arguments: &[String]) -> Option<Options> {
         limit: 100_000,
         budget: Duration::from_secs(30),
         jobs: 1,
+        earlier: None,
     };
     for pair in arguments.chunks(2) {
         let [name, value] = pair else { return None };
@@ -58,6 +61,7 @@ fn options(arguments: &[String]) -> Option<Options> {
             "--out" => options.out = value.into(),
             "--limit" => options.limit = value.parse().ok()?,
             "--budget" => options.budget = Duration::from_secs(value.parse().ok()?),
+            "--earlier" => options.earlier = Some(value.into()),
             "--jobs" => options.jobs = value.parse().ok()?,
             _ => return None,
         }
@@ -103,7 +107,8 @@ pub fn run(arguments: &[String]) -> io::Result<()> {
         programs.len()
     );
     let tests = record(&programs, &out, options.jobs)?;
-    let outcomes = try_all(&mutants, &tree, &programs, &tests, &options)?;
+    let caught = earlier(&options)?;
+    let outcomes = try_all(&mutants, &tree, &programs, &tests, &caught, &options)?;
     for (part, sample, of) in samples {
         let of_part: Vec<Value> = (0..mutants.len())
             .zip(&chosen)
@@ -161,12 +166,29 @@ fn panicked() -> io::Error {
     io::Error::other("a thread panicked")
 }
 
+/// Mutants that an earlier run caught, with their outcomes.
+fn earlier(options: &Options) -> io::Result<HashMap<String, &'static str>> {
+    let mut caught = HashMap::new();
+    let Some(folder) = &options.earlier else { return Ok(caught) };
+    for part in &options.parts {
+        let json: Value = serde_json::from_slice(&fs::read(folder.join(format!("{}.json", part.name)))?)?;
+        for outcome in json["outcomes"].as_array().into_iter().flatten() {
+            let summary = ["CaughtMutant", "Timeout"].into_iter().find(|summary| outcome["summary"] == *summary);
+            if let (Some(summary), Some(name)) = (summary, outcome["scenario"]["Mutant"]["name"].as_str()) {
+                caught.insert(name.to_owned(), summary);
+            }
+        }
+    }
+    Ok(caught)
+}
+
 /// Outcome of each mutant, by the names of cargo-mutants.
 fn try_all(
     mutants: &[Mutant],
     tree: &Tree<'_>,
     programs: &[Program],
     tests: &[Test],
+    caught: &HashMap<String, &'static str>,
     options: &Options,
 ) -> io::Result<Vec<&'static str>> {
     let untried = |id: u32| if tree.unviable.contains(&id) { "Unviable" } else { NOT_TRIED };
@@ -175,6 +197,10 @@ fn try_all(
     in_parallel(options.jobs, mutants.len(), |id| {
         let (mutant, number) = (&mutants[id], id as u32);
         if !tree.built.contains(&number) {
+            return Ok(());
+        }
+        if let Some(&summary) = caught.get(&mutant.name) {
+            outcomes.lock().map_err(|_| panicked())?[id] = summary;
             return Ok(());
         }
         let reaching = in_order(mutant, number, tests);
