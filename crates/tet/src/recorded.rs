@@ -77,6 +77,65 @@ fn complex() -> Plc {
     plc
 }
 
+/// Families of small surfaces and complexes, by a number.
+fn families() -> [(&'static str, u32, fn(u32) -> Plc); 9] {
+    /// Power of ten from 1 to 1e-12.
+    fn small(k: u32) -> f64 {
+        libm::pow(10.0, -f64::from(k % 13))
+    }
+    fn rotated(surface: TriMesh, k: u32) -> Plc {
+        Plc::from(&turned(surface, &mut Rng(u64::from(k) + 1)))
+    }
+    [
+        ("plates", 52, |k| rotated(plate(7 + k, 0.3 * small(k), &mut Rng(u64::from(k))), k)),
+        ("split plates", 13, |k| rotated(split(&plate(5 + 2 * k, 0.3 * small(k), &mut Rng(u64::from(k)))), k)),
+        ("sheets", 24, |k| Plc::from(&sheet(2 + k / 4, 0.3 * small(k % 5), f64::from(k) / 7.0, u64::from(k)))),
+        ("notches", 9, |k| Plc::from(&chazelle(1 + k / 3, small(k % 3)))),
+        ("prisms", 24, |k| Plc::from(&twisted_prism(3 + k, 0.5 / f64::from(1 + k % 7), 0.3 + f64::from(k % 3)))),
+        ("fans", 8, |k| Plc::from(&fan(4 + 5 * k, 1.0 + 9.0 * f64::from(k)))),
+        ("tubes", 12, |k| {
+            let direction = Vec3::new(0.1 * f64::from(k), 0.3, 1.0);
+            Plc::from(&tube(5 + k, 2 + k % 4, 0.5 + f64::from(k % 5), k % 2 == 0, direction))
+        }),
+        ("rows", 12, |k| rotated(rows([0.2 + f64::from(k % 4), 0.7, 1.0], 1 + k % 3), k)),
+        ("complexes", 20, |k| {
+            let (facets, segments) = dangling(u64::from(20 + 15 * k), 1 + k % 6, 0.03 * f64::from(1 + k % 5));
+            let mut plc = Plc::from(&joined(facets, &cube(1 + k % 3), 1.5, Vec3::repeat(-1.0)));
+            plc.segments = segments;
+            plc
+        }),
+    ]
+}
+
+#[test]
+fn families_are_filled_as_recorded() {
+    let mut all = String::new();
+    let bare = Tetrahedralizer::new().interior(Interior::None).optimize(false);
+    let open = bare.clone().kind(InputKind::Plc);
+    for (name, count, make) in families() {
+        let (mut counts, mut sum, mut refused) = ([0; 3], 0, 0);
+        for k in 0..count {
+            let plc = make(k);
+            match (if plc.segments.is_empty() { &bare } else { &open }).run(&plc) {
+                Ok(made) => {
+                    let steiner = made.summary.recovery.steiner_points;
+                    counts =
+                        [counts[0] + made.mesh.points.len(), counts[1] + made.mesh.tets.len(), counts[2] + steiner];
+                    sum = hash(sum ^ hash_of(&made.mesh));
+                }
+                Err(error) => {
+                    refused += 1;
+                    sum = error.to_string().bytes().fold(sum, |sum, b| hash(sum ^ u64::from(b)));
+                }
+            }
+        }
+        let [points, tets, steiner] = counts;
+        writeln!(all, "{name}: {points} points, {steiner} Steiner, {tets} tetrahedra, {refused} refused, {sum:016x}")
+            .expect("text");
+    }
+    insta::assert_snapshot!(all);
+}
+
 #[test]
 fn surfaces_are_filled_as_recorded() {
     let mut all = String::new();
