@@ -39,10 +39,11 @@ pub(super) fn not_empty(mesh: &TetMesh) -> LineResult {
     tally.done()
 }
 
+/// Finds points with coordinates that are not finite or for which the predicates are not exact.
 pub(super) fn finite_points(mesh: &TetMesh) -> LineResult {
     let mut tally = Tally::new(Line::FinitePoints);
     for (i, p) in mesh.points.iter().enumerate() {
-        if !p.iter().all(|&x| x.is_finite() && in_exact_range(x)) {
+        if !p.iter().all(|&x| in_exact_range(x)) {
             tally.add(|| Offender::new(OffenderKind::Point, &[i as u32], None));
         }
     }
@@ -189,16 +190,18 @@ pub(super) fn lines(mesh: &TetMesh, adjacency: &TetAdjacency) -> [LineResult; 6]
     ]
 }
 
-/// Number of components of tetrahedra connected by faces.
-pub(super) fn component_count(adjacency: &TetAdjacency) -> usize {
+/// First tetrahedron of each component. Components are tetrahedra of one region connected by faces.
+pub(super) fn components(adjacency: &TetAdjacency, region: impl Fn(u32) -> i32) -> impl Iterator<Item = u32> {
     let n = adjacency.neighbors.len();
     let mut sets = DisjointSets::new(n);
-    for (tet, row) in adjacency.neighbors.iter().enumerate() {
-        for &neighbor in row.iter().filter(|&&neighbor| neighbor != NONE && neighbor as usize / 4 > tet) {
-            sets.join(tet as u32, neighbor / 4);
+    for (tet, row) in (0..).zip(&adjacency.neighbors) {
+        for other in row.iter().filter(|&&handle| handle != NONE).map(|handle| handle / 4) {
+            if other > tet && region(other) == region(tet) {
+                sets.join(tet, other);
+            }
         }
     }
-    (0..n as u32).filter(|&tet| sets.root(tet) == tet).count()
+    (0..n as u32).filter(move |&tet| sets.root(tet) == tet)
 }
 
 /// Total volume, summed in order.

@@ -1,7 +1,7 @@
 //! Conditions on the boundary labels: wall and caps.
 
 use super::cells::face_offender;
-use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally};
+use super::result::{Expectation, Line, LineResult, Offender, OffenderKind, Skipped, Tally, without};
 use crate::geometry::DisjointSets;
 use crate::geometry::{Point3, Vec3};
 use crate::quality::triangle_area_vector;
@@ -156,22 +156,11 @@ fn cap_per_terminal(patches: &[Patch], expected: &Expectation) -> LineResult {
     let mut terminals = expected.terminals.clone();
     caps.sort_unstable();
     terminals.sort_unstable();
+    let mut unmatched = [without(&terminals, &caps), without(&caps, &terminals)].concat();
+    unmatched.sort_unstable();
     let mut tally = Tally::new(Line::CapPerTerminal);
-    let (mut i, mut j) = (0, 0);
-    while i < terminals.len() || j < caps.len() {
-        let (a, b) = (terminals.get(i).copied(), caps.get(j).copied());
-        if a == b {
-            (i, j) = (i + 1, j + 1);
-            continue;
-        }
-        let terminal_first = b.is_none() || a.is_some_and(|a| Some(a) < b);
-        let node = if terminal_first { a } else { b };
-        tally.add(|| Offender::new(OffenderKind::Node, &[node.unwrap_or_default()], None));
-        if terminal_first {
-            i += 1;
-        } else {
-            j += 1;
-        }
+    for node in unmatched {
+        tally.add(|| Offender::new(OffenderKind::Node, &[node], None));
     }
     tally.done()
 }
@@ -263,8 +252,8 @@ impl CapShape {
     }
 }
 
-/// True if triangles form one disc: connected by edges, one boundary loop, Euler number 1. Every edge is in one triangle,
-/// or in two with opposite directions.
+/// True if triangles form one disc: connected by edges, with a boundary and the Euler number 1. Every edge is in one triangle,
+/// or in two with opposite directions. Without a boundary, it would be a sphere that touches itself at a vertex.
 pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     let Ok(count) = u32::try_from(triangles.len()) else { return false };
     let mut directed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
@@ -276,31 +265,19 @@ pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
         directed.push(([face[i], face[(i + 1) % 3]], t));
     }
     directed.sort_unstable();
-    if count == 0 || directed.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+    if directed.windows(2).any(|pair| pair[0].0 == pair[1].0) {
         return false;
     }
     let find = |edge: [u32; 2]| directed.binary_search_by_key(&edge, |entry| entry.0).ok().map(|i| directed[i].1);
     let mut sets = DisjointSets::new(triangles.len());
-    let mut rim: Vec<[u32; 2]> = Vec::new();
+    let mut rim = 0;
     for &([a, b], t) in &directed {
         match find([b, a]) {
             Some(other) => sets.join(t, other),
-            None => rim.push([a, b]),
+            None => rim += 1,
         }
     }
     let connected = (0..count).all(|t| sets.root(t) == 0);
-    let edges = usize::midpoint(directed.len(), rim.len());
-    connected && vertices.len() + triangles.len() == edges + 1 && is_one_loop(&rim)
-}
-
-/// True if ascending directed edges form one simple loop.
-fn is_one_loop(rim: &[[u32; 2]]) -> bool {
-    let Some(&[start, mut at]) = rim.first() else { return false };
-    let mut steps = 1;
-    while at != start && steps <= rim.len() {
-        let Ok(next) = rim.binary_search_by_key(&at, |edge| edge[0]) else { return false };
-        at = rim[next][1];
-        steps += 1;
-    }
-    at == start && steps == rim.len()
+    let edges = usize::midpoint(directed.len(), rim);
+    connected && vertices.len() + triangles.len() == edges + 1 && rim > 0
 }

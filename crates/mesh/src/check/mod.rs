@@ -165,7 +165,7 @@ impl Check<'_> {
         lines.extend(cells::lines(mesh, &adjacency));
         ask(self.progress)?;
         lines.push(cells::no_duplicate_points(mesh));
-        counts.components = cells::component_count(&adjacency);
+        counts.components = cells::components(&adjacency, |_| 0).count();
         counts.volume = cells::volume(mesh);
         let volume = self.volume.filter(|_| !self.regions.is_empty());
         let mut regions = volume.map(|volume| RegionCheck::of(volume, self.regions, &adjacency));

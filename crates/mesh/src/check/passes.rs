@@ -88,13 +88,7 @@ struct PartSum {
 
 /// Face with its smallest vertex first, so that equal faces of one orientation have equal vertices.
 fn oriented([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
+    [a, b, c].min([b, c, a]).min([c, a, b])
 }
 
 struct Passes<'a> {

@@ -2,12 +2,11 @@
 //!
 //! The boundary of a region consists of its outer faces and its interfaces. It is checked as that of a mesh of its own.
 
-use super::cells::face_offender;
+use super::cells::{self, face_offender};
 use super::labels::{LABEL_LINES, cap_lines, face_at, labels_match, own_patch};
 use super::result::{self, Expectation, Line, LineResult, Offender, OffenderKind, RegionCounts, Skipped, Tally};
 use super::surface::Boundary;
-use crate::adjacency::{NONE, TetAdjacency};
-use crate::geometry::DisjointSets;
+use crate::adjacency::TetAdjacency;
 use crate::progress::Progress;
 use crate::quality::volume6;
 use crate::region::{RegionFace, faces_with};
@@ -163,7 +162,7 @@ impl<'a> RegionCheck<'a> {
         for (i, tet) in tets.iter().enumerate() {
             let region = self.volume.tet_block.get(i).copied().unwrap_or(0);
             if known.binary_search(&region).is_err() {
-                let place = super::cells::centroid(points, tet);
+                let place = cells::centroid(points, tet);
                 tally.add(|| Offender::new(OffenderKind::Tet, &[i as u32], Some(place)));
             }
         }
@@ -265,16 +264,8 @@ impl<'a> RegionCheck<'a> {
 /// Number of components of each region: tetrahedra of a region connected by faces.
 fn components(volume: &VolumeMesh, adjacency: &TetAdjacency) -> BTreeMap<i32, usize> {
     let of = |tet: u32| volume.tet_block.get(tet as usize).copied().unwrap_or(0);
-    let mut sets = DisjointSets::new(adjacency.neighbors.len());
-    for (tet, row) in (0..).zip(&adjacency.neighbors) {
-        for other in row.iter().filter(|&&handle| handle != NONE).map(|handle| handle / 4) {
-            if other > tet && of(other) == of(tet) {
-                sets.join(tet, other);
-            }
-        }
-    }
     let mut components = BTreeMap::new();
-    for tet in (0..adjacency.neighbors.len() as u32).filter(|&tet| sets.root(tet) == tet) {
+    for tet in cells::components(adjacency, of) {
         *components.entry(of(tet)).or_default() += 1;
     }
     components

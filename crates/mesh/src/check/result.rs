@@ -412,6 +412,16 @@ impl Tally {
     }
 }
 
+/// Numbers of a sorted list that are not in another sorted list; equal numbers count one by one.
+pub(super) fn without(all: &[u32], other: &[u32]) -> Vec<u32> {
+    let mut left = other.iter().peekable();
+    let is_unmatched = |n: &&u32| {
+        while left.next_if(|other| other < n).is_some() {}
+        left.next_if_eq(n).is_none()
+    };
+    all.iter().filter(is_unmatched).copied().collect()
+}
+
 /// Compares the number of components with the skeleton's.
 pub(super) fn components(expectation: Option<&Expectation>, found: usize) -> LineResult {
     let Some(expected) = expectation else {

@@ -55,7 +55,7 @@ impl<'a> Boundary<'a> {
         for (handle, &other) in matched.neighbors.as_flattened().iter().enumerate() {
             let handle = handle as u32;
             // Open and crowded edges have no partner; partners must have the opposite direction.
-            if other == NONE || (handle < other && self.ends(handle) == self.ends(other)) {
+            if other == NONE || self.ends(handle) == self.ends(other) {
                 wrong.push(self.undirected(handle));
             }
         }
@@ -80,7 +80,7 @@ impl<'a> Boundary<'a> {
             }
         };
         for (handle, &other) in matched.neighbors.as_flattened().iter().enumerate() {
-            if other != NONE && (handle as u32) < other {
+            if other != NONE {
                 join(handle as u32, other);
             }
         }

@@ -1,6 +1,6 @@
 //! Text form of a check's result; its JSON form is `CheckReport` itself.
 
-use super::result::PRINTED_OFFENDERS;
+use super::result::{PRINTED_OFFENDERS, without};
 use super::{CheckReport, LineResult, Offender, OffenderKind, Outcome, RegionCounts, Skipped, Verdict};
 use crate::units::{counted, digits, grouped, place, tetrahedra};
 use std::fmt::{self, Write as _};
@@ -147,16 +147,6 @@ pub fn violation(result: &LineResult) -> String {
         _ if result.count == 1 => one.to_owned(),
         _ => many.replace("{}", &grouped(result.count as usize)),
     }
-}
-
-/// Numbers of a sorted list that are not in another sorted list; equal numbers count one by one.
-fn without(all: &[u32], other: &[u32]) -> Vec<u32> {
-    let mut left = other.iter().peekable();
-    let is_unmatched = |n: &&u32| {
-        while left.next_if(|other| other < n).is_some() {}
-        left.next_if_eq(n).is_none()
-    };
-    all.iter().filter(is_unmatched).copied().collect()
 }
 
 /// A list of numbers, shortened if long.
