@@ -210,3 +210,7 @@ pub(super) fn volume(mesh: &TetMesh) -> f64 {
     let six = |&[a, b, c, d]: &[u32; 4]| crate::quality::volume6(p(a), p(b), p(c), p(d));
     mesh.tets.iter().map(six).sum::<f64>() / 6.0
 }
+
+#[cfg(test)]
+#[path = "cells_tests.rs"]
+mod tests;

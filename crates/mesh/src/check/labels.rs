@@ -281,3 +281,7 @@ pub(super) fn is_disc(triangles: &[[u32; 3]]) -> bool {
     let edges = usize::midpoint(directed.len(), rim);
     connected && vertices.len() + triangles.len() == edges + 1 && rim > 0
 }
+
+#[cfg(test)]
+#[path = "labels_tests.rs"]
+mod tests;

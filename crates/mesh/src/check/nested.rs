@@ -90,6 +90,31 @@ pub(super) fn enclosed(points: &[Point3], faces: &[[u32; 3]], surfaces: &Surface
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check::surfaces::surfaces;
+
+    #[test]
+    fn the_volume_within_a_surface_and_its_doubt_grow_with_the_cube_of_lengths() {
+        let cube = crate::shapes::cube_lattice(3);
+        let faces = crate::adjacency::boundary_faces(&cube);
+        let of_cube = |length: f64| {
+            let points: Vec<Point3> = cube.points.iter().map(|p| p * length).collect();
+            enclosed(&points, &faces, &surfaces(points.len(), &faces))[0]
+        };
+        let unit = of_cube(1.0);
+        assert!(unit.doubt > (unit.volume() - 1.0).abs() && unit.doubt < 1e-11, "{unit:?}");
+        for length in [2.0_f64.powi(-20), 8.0] {
+            let (volume, found) = (length.powi(3), of_cube(length));
+            assert_eq!(found, Enclosed { volume: volume * unit.volume, doubt: volume * unit.doubt });
+            assert!((found.volume() / volume - 1.0).abs() < 1e-11, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_doubt_of_a_sum_is_that_of_its_terms_and_of_the_sum() {
+        let mut sum = Enclosed { volume: 1.0, doubt: 0.25 };
+        sum.add(Enclosed { volume: -9.0, doubt: 0.5 });
+        assert_eq!(sum, Enclosed { volume: -8.0, doubt: 0.25 + (0.5 + ROUNDOFF * 8.0) });
+    }
 
     #[test]
     fn a_cavity_has_a_volume_that_is_certainly_negative() {

@@ -1,12 +1,13 @@
 //! Each condition on regions is broken once, and found.
 
+use super::super::tests::{add_copy, relabelled};
 use super::super::{Line, Outcome, Skipped, check_regions, check_regions_watched};
 use super::*;
+use crate::Cap;
 use crate::geometry::{Point3, Vec3};
 use crate::progress::{Cancelled, StopsAfter};
 use crate::region::region_faces;
 use crate::shapes::walled_channel;
-use crate::{Cap, Patch};
 use std::f64::consts::PI;
 
 /// Channel with caps at both ends, and its regions and expectation.
@@ -30,17 +31,6 @@ fn failures(volume: &VolumeMesh, regions: &[NamedRegion], expectation: Option<&E
 fn first_of(volume: &VolumeMesh, name: &str) -> usize {
     let id = volume.patches.iter().find(|patch| patch.name == name).unwrap().id;
     volume.boundary_patch.iter().position(|&patch| patch == id).unwrap()
-}
-
-/// Labels the faces again after a change of regions; interfaces have the patch `interface`, others `boundary`.
-fn relabelled(mut volume: VolumeMesh) -> VolumeMesh {
-    let faces = region_faces(&volume.mesh, &volume.tet_block);
-    volume.boundary = faces.iter().map(|face| face.vertices).collect();
-    volume.boundary_block = faces.iter().map(|face| face.region).collect();
-    volume.boundary_patch = faces.iter().map(|face| if face.beyond.is_some() { 3 } else { 2 }).collect();
-    volume.patches =
-        [(2, "boundary"), (3, "interface")].map(|(id, name)| Patch { id, name: name.into(), cap: None }).into();
-    volume
 }
 
 #[test]
@@ -67,6 +57,40 @@ fn the_expectation_is_that_of_the_lumen() {
     assert_eq!(outcome(Line::Components), Some(Outcome::NotChecked(Skipped::NoLumen)));
     assert_eq!(outcome(Line::CapFlat), Some(Outcome::NotChecked(Skipped::NoLumen)));
     assert_eq!(report.failed().count(), 0, "{report}");
+    let report = check_regions(&volume, &regions, None);
+    let outcome = report.line(Line::Components).map(|result| result.outcome);
+    assert_eq!(outcome, Some(Outcome::NotChecked(Skipped::NoExpectation)));
+}
+
+#[test]
+fn faces_of_the_lumen_are_wall_or_cap_whatever_its_id() {
+    let first = channel();
+    let mut last = first.clone();
+    let (volume, regions, _) = &mut last;
+    let interface = first_of(volume, "interface_lumen_wall");
+    let interface = volume.boundary_patch[interface];
+    for block in volume.tet_block.iter_mut().chain(&mut volume.boundary_block).filter(|block| **block == 1) {
+        *block = 9;
+    }
+    // Interfaces face out of the region with the smaller id.
+    for (i, _) in (0..).zip(&volume.boundary_patch).filter(|(_, patch)| **patch == interface) {
+        volume.boundary[i as usize].swap(0, 1);
+        volume.boundary_block[i as usize] = 2;
+    }
+    regions[0].id = 9;
+    regions.rotate_left(1);
+    for (sound, regions, expectation) in [first, last] {
+        assert_eq!(failures(&sound, &regions, Some(&expectation)), []);
+        let relabelled = |name: &str| {
+            let mut volume = sound.clone();
+            let face = first_of(&volume, name);
+            // The patch of the outer faces of the tissue.
+            volume.boundary_patch[face] = 8;
+            failures(&volume, &regions, Some(&expectation))
+        };
+        assert_eq!(relabelled("interface_lumen_wall"), [Line::WallOrCap]);
+        assert_eq!(relabelled("interface_wall_tissue"), []);
+    }
 }
 
 #[test]
@@ -212,12 +236,12 @@ fn boundaries_of_regions_are_manifold() {
 #[test]
 fn boundaries_of_regions_do_not_intersect() {
     let (mut volume, regions, _) = channel();
-    let count = volume.mesh.points.len() as u32;
-    let moved: Vec<Point3> = volume.mesh.points.iter().map(|p| p + Vec3::new(0.11, 0.13, 0.07)).collect();
-    volume.mesh.points.extend(moved);
-    let tets: Vec<[u32; 4]> = volume.mesh.tets.iter().map(|tet| tet.map(|v| v + count)).collect();
-    volume.mesh.tets.extend(tets);
-    volume.tet_block.extend_from_within(..);
+    add_copy(&mut volume, |p| p + Vec3::new(0.11, 0.13, 0.07));
+    let failed = failures(&relabelled(volume), &regions, None);
+    assert_eq!(failed, [Line::NoSelfIntersection, Line::RegionIntersections]);
+    // A small copy inside the outermost region, without contact.
+    let (mut volume, ..) = channel();
+    add_copy(&mut volume, |p| p * 0.01 + Vec3::repeat(0.05));
     let failed = failures(&relabelled(volume), &regions, None);
     assert_eq!(failed, [Line::NoSelfIntersection, Line::RegionIntersections]);
 }

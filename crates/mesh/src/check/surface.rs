@@ -189,6 +189,35 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn neighbours_of_the_same_turn_leave_their_edge_open() {
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point3::from);
+        let mut faces = crate::TET_FACES.map(|face| face.map(|i| i as u32));
+        let edges = |faces: &[[u32; 3]]| {
+            let [edges, fans] = Boundary::new(&points, faces).manifold_lines();
+            assert_eq!(fans.count, 0);
+            edges.offenders.into_iter().map(|offender| offender.ids).collect::<Vec<_>>()
+        };
+        assert!(edges(&faces).is_empty());
+        faces[0].swap(0, 1);
+        assert_eq!(edges(&faces), [[1, 2], [1, 3], [2, 3]]);
+    }
+
+    #[test]
+    fn surfaces_beyond_the_expected_number_of_each_genus_are_listed() {
+        let wrong = |expected: &[u32], found: &[u32]| {
+            let found = found.iter().copied().zip(0..).collect();
+            let line = compare_loops(expected, found, |v| Offender::new(OffenderKind::Point, &[v], None));
+            (line.fails(), line.offenders.into_iter().map(|offender| offender.ids[0]).collect::<Vec<_>>())
+        };
+        assert_eq!(wrong(&[1, 0, 0], &[0, 1, 0]), (false, vec![]));
+        assert_eq!(wrong(&[0, 1, 0], &[0, 1, 1]), (true, vec![2]));
+        assert_eq!(wrong(&[0], &[0, 0, 0]), (true, vec![1, 2]));
+        assert_eq!(wrong(&[1, 1], &[0, 2, 1]), (true, vec![0, 1]));
+        // A surface may be missing.
+        assert_eq!(wrong(&[0, 2], &[2]), (true, vec![]));
+    }
+
     proptest! {
         /// The fans agree with matched edges, for surfaces of tetrahedra that meet in faces, edges and vertices.
         #[test]

@@ -184,6 +184,7 @@ mod tests {
     use super::super::{Expectation, check_tets};
     use super::*;
     use crate::TetMesh;
+    use crate::geometry::Point3;
     use crate::shapes::cube_lattice;
 
     fn text_of(mesh: &TetMesh) -> String {
@@ -197,6 +198,15 @@ mod tests {
         assert!(text.contains("  -    every cap faces outwards: skipped, because the boundary has no labels\n"));
         assert!(text.ends_with("no fault found, but some conditions were skipped\n"));
         assert!(text.contains("48 tetrahedra, 27 points, 48 boundary faces, 0 caps, volume 1.0000"));
+        assert!(text.contains("\nradius ratio mean 0.72, min 0.72; dihedral angles 45° to 90°\n"), "{text}");
+        assert!(!text.contains(" more"), "{text}");
+    }
+
+    #[test]
+    fn sizes_without_tetrahedra_are_those_of_a_surface() {
+        let report = check_tets(&TetMesh { points: vec![Point3::origin()], tets: Vec::new() }, None);
+        assert_eq!(sizes(&report), "1 point, 0 boundary faces, 0 caps, 0 components, volume 0.0000");
+        assert_eq!(shape(&report), None);
     }
 
     #[test]
@@ -213,7 +223,9 @@ mod tests {
         assert_eq!(first.lines().count(), 2 + MAX_NAMED);
         mesh = cube_lattice(1);
         mesh.tets[0].swap(0, 1);
-        assert!(faults(&check_tets(&mesh, None), " (-v)").starts_with("FAIL 1 tetrahedron is inverted or flat\n"));
+        let text = faults(&check_tets(&mesh, None), " (-v)");
+        assert!(text.starts_with("FAIL 1 tetrahedron is inverted or flat\n         tetrahedron 0 at "), "{text}");
+        assert_eq!(text.split("FAIL ").nth(1).map(|first| first.lines().count()), Some(2));
     }
 
     #[test]
