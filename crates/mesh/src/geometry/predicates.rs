@@ -187,6 +187,23 @@ mod tests {
         }
     }
 
+    #[test]
+    fn orientations_are_accurate_if_only_one_point_is_far_in_a_direction() {
+        // The far point is opposite to the first one, or near to the origin.
+        for [x, far] in [[-0.501_234_567_89, 0.501_234_567_89], [1.234_567_891_2, libm::exp2(-23.0)]] {
+            let a = Point3::new(x, 0.1, 0.3);
+            let b = Point3::new(far, 0.123_4, 0.356_7);
+            for step in 20..40 {
+                let off = libm::exp2(f64::from(step)).recip();
+                let c = a + super::super::Vec3::new(1.1e-7, 0.912_3, 1.034_5);
+                let d = a + super::super::Vec3::new(2.3e-7, 0.812_3, 1.034_5 * 0.812_3 / 0.912_3 + off);
+                for [p, q, r] in [[&b, &c, &d], [&d, &b, &c], [&c, &d, &b]] {
+                    assert_accurate([&a, p, q, r]);
+                }
+            }
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
