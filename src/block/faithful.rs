@@ -196,6 +196,7 @@ mod tests {
     use super::*;
     use crate::partition::{PartitionParams, partition};
     use crate::surface::{Finer, SurfaceParams, vessel_wall};
+    use anastomesh_mesh::shapes::sphere_surface;
     use anastomesh_skeleton::fixtures::network;
 
     /// A polyline as one cluster.
@@ -280,5 +281,70 @@ mod tests {
             *(if expected { &mut parted } else { &mut open }) += 1;
         }
         assert!(search.tree.is_some() && parted > 100 && open > 100, "{parted} {open}");
+    }
+
+    fn tube(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64) -> Tube {
+        Tube { a: a.into(), b: b.into(), ra, rb }
+    }
+
+    fn of_tubes(tubes: Vec<Tube>) -> Cluster {
+        Cluster { tubes, ..Cluster::default() }
+    }
+
+    #[test]
+    fn samples_are_two_radii_apart_and_at_most_eight() {
+        let of = |length: f64, ra, rb| places(&of_tubes(vec![tube([1.0, 0.0, 0.0], [1.0 + length, 0.0, 0.0], ra, rb)]));
+        let xs = |places: Vec<Point3>| places.iter().map(|p| p.x).collect::<Vec<f64>>();
+        assert_eq!(xs(of(6.0, 1.0, 2.0)), [3.0, 5.0, 7.0]);
+        assert_eq!(xs(of(7.5, 1.5, 1.25)), [3.5, 6.0, 8.5]);
+        assert_eq!(xs(of(0.5, 1.0, 1.0)), [1.5]);
+        assert_eq!(xs(of(80.0, 1.0, 1.0)), [11.0, 21.0, 31.0, 41.0, 51.0, 61.0, 71.0, 81.0]);
+    }
+
+    #[test]
+    fn samples_level_with_vertices_of_the_wall_are_seen() {
+        let sphere = sphere_surface(2);
+        let found =
+            |a: [f64; 3], b: [f64; 3]| outside(&sphere, &of_tubes(vec![tube(a, b, 0.1, 0.1)]), &Watch::NOBODY).unwrap();
+        assert_eq!(found([0.0; 3], [0.5, 0.0, 0.0]), None);
+        assert_eq!(found([0.0; 3], [0.0, -0.5, 0.0]), None);
+        // Outside, and on a vertex of the wall.
+        assert_eq!(found([1.5, 0.0, 0.0], [1.6, 0.0, 0.0]), Some(Point3::new(1.6, 0.0, 0.0)));
+        assert_eq!(found([-1.5, 0.0, 0.0], [-1.6, 0.0, 0.0]), Some(Point3::new(-1.6, 0.0, 0.0)));
+        assert_eq!(found([0.9, 0.0, 0.0], [1.0, 0.0, 0.0]), Some(Point3::new(1.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn segments_meet_a_triangle_that_they_cross_or_touch() {
+        let wall = TriMesh {
+            points: [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]].map(Point3::from).to_vec(),
+            triangles: vec![[0, 1, 2]],
+        };
+        let below = [1.0, 1.0, -1.0];
+        for (p, q, expected) in [
+            (below, [1.0, 1.0, 1.0], true),
+            (below, [1.0, 1.0, 0.0], true),
+            (below, [1.0, 1.0, -0.5], false),
+            ([1.0, 1.0, 2.0], [1.0, 1.0, 1.0], false),
+            ([2.0, 2.0, -1.0], [2.0, 2.0, 1.0], true),
+            ([3.0, 3.0, -1.0], [3.0, 3.0, 1.0], false),
+            ([-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], false),
+            ([1.0, -1.0, -1.0], [1.0, -1.0, 1.0], false),
+            ([1.0, -2.0, -1.0], [1.0, 1.0, 1.0], false),
+            ([-2.0, 1.0, -1.0], [1.0, 1.0, 1.0], false),
+            ([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], true),
+        ] {
+            let [p, q] = [p, q].map(Point3::from);
+            assert_eq!([is_parted(&wall, &p, &q), is_parted(&wall, &q, &p)], [expected; 2], "{p} {q}");
+        }
+    }
+
+    #[test]
+    fn widened_vessels_share_their_nodes() {
+        let at = [2.0, 0.0, 0.0];
+        let skeleton = widened(&of_tubes(vec![tube([0.0; 3], at, 1.0, 2.0), tube(at, [2.0, 9.0, 0.0], 2.0, 3.0)]));
+        assert_eq!(skeleton.nodes.iter().map(|node| node.radius).collect::<Vec<_>>(), [1.3, 2.6, 1.3 * 3.0]);
+        let edges: Vec<_> = skeleton.edges.iter().map(|edge| (edge.nodes.map(|n| n.0), edge.radii)).collect();
+        assert_eq!(edges, [([0, 1], [1.3, 2.6]), ([1, 2], [2.6, 1.3 * 3.0])]);
     }
 }
