@@ -127,4 +127,38 @@ mod tests {
         let stopped = Loops::of(&two, 1, &Watch::NOBODY.within(&budget));
         assert!(matches!(stopped, Err(Stop::OverBudget(_))));
     }
+
+    #[test]
+    fn loops_are_filled_in_any_place_and_unit() {
+        for (radius, filled) in [(1.2, true), (1.6, false)] {
+            let mut moved = ring(radius);
+            for tube in &mut moved.tubes {
+                let place = |p: Point3| Point3::new(8.0 * p.x + 70.0, 8.0 * p.y - 30.0, 8.0 * p.z + 50.0);
+                *tube = Tube { a: place(tube.a), b: place(tube.b), ra: 8.0 * tube.ra, rb: 8.0 * tube.rb };
+            }
+            let loops = Loops::of(&moved, 0, &Watch::NOBODY).unwrap();
+            assert_eq!(loops.expected, 1 - i64::from(filled), "radius {radius}");
+        }
+    }
+
+    #[test]
+    fn a_hole_away_from_the_centre_of_its_loop_is_found() {
+        // Two runs side by side, whose lumens touch, and a bend of this radius around a hole.
+        let expected = |bend: f64| {
+            let side = |sign: f64| {
+                let run = (0..10).map(move |i| Point3::new(-24.0 + 2.4 * f64::from(i), 0.4 * sign, 0.0));
+                run.chain((1..8).map(move |i| {
+                    let angle = std::f64::consts::PI * (1.0 - f64::from(i) / 8.0);
+                    Point3::new(bend * (1.0 + libm::cos(angle)), sign * bend * libm::sin(angle), 0.0)
+                }))
+            };
+            let mut points: Vec<Point3> = side(1.0).collect();
+            points.push(Point3::new(2.0 * bend, 0.0, 0.0));
+            points.extend(side(-1.0).collect::<Vec<_>>().into_iter().rev());
+            let ends = points.iter().zip(points.iter().cycle().skip(1));
+            let tubes = ends.map(|(&a, &b)| Tube { a, b, ra: 1.0, rb: 1.0 }).collect();
+            Loops::of(&Cluster { tubes, ..Cluster::default() }, 0, &Watch::NOBODY).unwrap().expected
+        };
+        assert_eq!([0.9, 1.2, 2.0, 4.0].map(expected), [0, 0, 1, 1]);
+    }
 }

@@ -123,3 +123,39 @@ impl Faces {
         rest
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Topology with this number of discs, whose vertices are their numbers.
+    fn of_discs(count: u32) -> Arc<Topology> {
+        let discs = (0..count).map(|i| FinishedJoint { vertices: vec![i], faces: Vec::new() }).collect();
+        Arc::new(Topology { discs, ..Topology::default() })
+    }
+
+    #[test]
+    fn each_order_of_discs_is_kept() {
+        let orders: [&[usize]; 7] = [&[0, 1], &[1, 0], &[0, 2, 1], &[1, 0, 2], &[1, 2, 0], &[2, 0, 1], &[2, 1, 0]];
+        let [two, three, four] = [2, 3, 4].map(of_discs);
+        for order in orders {
+            let topology = if order.len() == 2 { &two } else { &three };
+            let ordered = topology.ordered(order);
+            let found: Vec<usize> = ordered.discs.iter().map(|disc| disc.vertices[0] as usize).collect();
+            assert_eq!(found, order);
+            assert!(Arc::ptr_eq(&ordered, &topology.ordered(order)), "{order:?}");
+        }
+        // Orders of more discs are not kept.
+        assert!(!Arc::ptr_eq(&four.ordered(&[1, 0, 2, 3]), &four.ordered(&[1, 0, 2, 3])));
+    }
+
+    #[test]
+    fn topologies_differ_in_discs_and_walls() {
+        let [two, other] = [of_discs(2), of_discs(2)];
+        assert_eq!(two, other);
+        assert_ne!(*two, Topology { wall: vec![1], discs: two.discs.clone(), ..Topology::default() });
+        assert_ne!(two, of_discs(3));
+        let adjacency = Some(Arc::default());
+        assert_ne!(*two, Topology { adjacency, discs: two.discs.clone(), ..Topology::default() });
+    }
+}
