@@ -88,7 +88,7 @@ fn has_sound_arrays(mesh: &TetMesh) -> bool {
 }
 
 pub(super) fn has_sound_points(mesh: &TetMesh) -> bool {
-    mesh.points.iter().all(|p| p.iter().all(|&x| x.is_finite() && in_exact_range(x)))
+    mesh.points.iter().all(|p| p.iter().all(|&x| in_exact_range(x)))
 }
 
 /// True if all tetrahedra are positive, with their volume and their quality.

@@ -49,7 +49,6 @@ pub(super) struct Held {
     pub tets: u64,
     pub volume: f64,
     pub quality: QualitySum,
-    pub unsound: bool,
     pub intersections: Vec<Intersection>,
 }
 
@@ -89,10 +88,8 @@ impl Held {
         if !c.faults.is_empty() {
             self.faulty.insert(part);
         }
-        let wrong = |j: &HeldJoint| {
-            j.faces > 0 && !c.unsound && (j.surface as usize >= c.surfaces.len() || j.component >= c.components)
-        };
-        // Joints off the boundary are faults already.
+        let wrong = |j: &HeldJoint| j.surface as usize >= c.surfaces.len() || j.component >= c.components;
+        // Joints that are empty or off the boundary are faults already.
         if c.faults.is_empty() && c.joints.iter().any(wrong) {
             return Err(invalid(format!("the certificate of part {part} contradicts itself")));
         }
@@ -109,7 +106,6 @@ impl Held {
         self.points += u64::from(c.points);
         self.tets += u64::from(c.tets);
         self.volume += c.volume;
-        self.unsound |= c.unsound;
         if !self.quality.add_piece(&c.quality) {
             return Err(invalid(format!("the certificate of part {part} cannot be read")));
         }

@@ -147,7 +147,8 @@ fn by_ids(joint: &FacesApart) -> Vec<([u32; 3], [u32; 3], [u32; 3])> {
 
 fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut JointDifferences) {
     let (first, second) = (by_ids(a), by_ids(b));
-    let (mut i, mut j, mut same) = (0, 0, 0);
+    let (mut i, mut j) = (0, 0);
+    differences.all = true;
     while i < first.len() || j < second.len() {
         let order = match (first.get(i), second.get(j)) {
             (Some(x), Some(y)) => x.0.cmp(&y.0),
@@ -156,7 +157,7 @@ fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut JointDifferen
         };
         match order {
             Ordering::Equal => {
-                same += 1;
+                differences.all = false;
                 if same_turn(first[i].1, second[j].1) {
                     differences.found.push((Line::OppositeSides, face_of(a, first[i].2)));
                 }
@@ -167,7 +168,6 @@ fn compare_faces(a: &FacesApart, b: &FacesApart, differences: &mut JointDifferen
         i += usize::from(order.is_le());
         j += usize::from(order.is_ge());
     }
-    differences.all = same == 0;
 }
 
 /// Compares points: common ids need equal points, and stand for one point each.

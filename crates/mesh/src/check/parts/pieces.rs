@@ -105,14 +105,13 @@ struct Ids {
 impl Ids {
     fn of(tets: &[[u32; 4]]) -> Self {
         let all = distinct(tets.as_flattened());
-        let (mut run, mut start) = (0..0, 0);
-        for part in all.chunk_by(|a, b| a + 1 == *b) {
-            let end = start + part.len() as u32;
-            if part.len() > run.len() {
-                run = start..end;
-            }
-            start = end;
-        }
+        let mut end = 0;
+        let runs = all.chunk_by(|a, b| a + 1 == *b).map(|run| {
+            let start = end;
+            end += run.len() as u32;
+            start..end
+        });
+        let run = runs.max_by_key(Range::len).unwrap_or_default();
         Self { all, run }
     }
 
@@ -252,10 +251,9 @@ fn join(known: &[Known]) -> Result<Vec<[(u32, u32); 2]>, Unfit> {
     all.sort_unstable();
     let mut joined = Vec::with_capacity(all.len() / 2);
     for run in all.chunk_by(|a, b| a.0 == b.0) {
-        match *run {
-            [(_, a), (_, b)] if a.0 != b.0 => joined.push([a, b]),
-            _ => return Err(Unfit::Joint(run[0].1.0)),
-        }
+        // Joints of one piece have no common vertex, so two with equal faces are of different pieces.
+        let [(_, a), (_, b)] = *run else { return Err(Unfit::Joint(run[0].1.0)) };
+        joined.push([a, b]);
     }
     joined.sort_unstable();
     Ok(joined)

@@ -188,9 +188,6 @@ fn test_pair(a: &Wall, b: &Wall) -> Meetings {
         return meetings;
     }
     let (first, second) = (a.faces_near(&common), b.faces_near(&common));
-    if first.is_empty() || second.is_empty() {
-        return meetings;
-    }
     for (i, j) in overlapping(&first, &second) {
         let (p, q) = (a.triangle(i), b.triangle(j));
         match classify_triangles(p, q) {
@@ -262,7 +259,7 @@ fn common_edges(
             let t = wall.triangle(*f);
             for i in 0..3 {
                 let (v, w) = (t.ids[i], t.ids[(i + 1) % 3]);
-                if rim.binary_search(&v).is_ok() && rim.binary_search(&w).is_ok() {
+                if [v, w].iter().all(|v| rim.binary_search(v).is_ok()) {
                     edges.push(([v.min(w), v.max(w)], is_first, *t.corners[i]));
                 }
             }

@@ -270,10 +270,10 @@ impl Whole<'_> {
 }
 
 impl HeldCap {
+    /// True for the disc of a cap of the same node.
     fn is(&self, cap: &crate::Cap) -> bool {
         let same = |a: &[f64; 3], b: &[f64]| a.iter().zip(b).all(|(x, y)| x.to_bits() == y.to_bits());
-        self.node == cap.node
-            && self.radius.to_bits() == cap.radius.to_bits()
+        self.radius.to_bits() == cap.radius.to_bits()
             && same(&self.center, cap.center.coords.as_slice())
             && same(&self.normal, cap.normal.as_slice())
     }
