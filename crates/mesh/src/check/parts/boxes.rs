@@ -51,3 +51,26 @@ impl Boxes {
         self.tree.into_boxes()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    #[test]
+    fn each_pair_is_found_from_the_part_that_is_earlier_on_the_curve() {
+        let at = |x: f64| Aabb { min: Point3::new(x, 0.0, 0.0), max: Point3::new(x + 1.0, 1.0, 1.0) };
+        // Out of order: 0 meets 2, 2 meets 4, 4 meets 1; 3 is apart.
+        let boxes = Boxes::new([0.0, 2.4, 0.8, 9.0, 1.6].map(at).to_vec());
+        let place = |part: u32| boxes.along_curve().iter().position(|&other| other == part);
+        let mut found: Vec<[u32; 2]> = Vec::new();
+        for part in 0..5 {
+            for pair in boxes.partners(part) {
+                assert!(pair[0] == part && place(part) < place(pair[1]), "{pair:?}");
+                found.push([pair[0].min(pair[1]), pair[0].max(pair[1])]);
+            }
+        }
+        found.sort_unstable();
+        assert_eq!(found, [[0, 2], [1, 4], [2, 4]]);
+    }
+}

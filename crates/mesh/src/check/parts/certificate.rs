@@ -370,3 +370,7 @@ fn owners(part: &PartView, faces: &[[u32; 3]]) -> (Vec<Owner>, LineResult) {
     }
     (owners, tally.done())
 }
+
+#[cfg(test)]
+#[path = "certificate_tests.rs"]
+mod tests;

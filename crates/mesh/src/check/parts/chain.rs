@@ -155,4 +155,35 @@ mod tests {
         assert!(Link::new(&PartView { mesh: &mesh, joints: &half, caps: &[] }).is_none());
         assert!(!shares_nothing_else(&PartView { mesh: &mesh, joints: &half, caps: &[] }, &half[0]));
     }
+
+    #[test]
+    fn a_chain_has_the_loops_of_all_its_links() {
+        let mesh = prism(0.0, 1.0);
+        let mut link = Link::new(&PartView { mesh: &mesh, joints: &discs(5), caps: &[] }).expect("a link");
+        // Each with one handle.
+        link.certificate.surfaces[0].euler = 0;
+        let chain = chained([&link, &link, &link]).expect("a chain");
+        assert_eq!(chain.surfaces[0].euler, 2 - 2 * 3);
+    }
+
+    #[test]
+    fn links_have_equal_ends_if_their_vertices_have_equal_order() {
+        assert_eq!(in_order(&[[9, 4, 7], [4, 9, 8]]), [[0, 1, 3], [0, 3, 2]]);
+        assert_eq!(in_order(&[[8, 4, 9], [7, 9, 4]]), [[0, 1, 3], [0, 3, 2]]);
+        assert_eq!(in_order(&[[2, 0, 1], [2, 3, 0]]), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn edges_and_faces_between_vertices_of_a_joint_belong_to_it() {
+        let shares_nothing_else = |tets: &[[u32; 4]], joint: &[[u32; 3]]| {
+            let mesh = TetMesh { points: Vec::new(), tets: tets.to_vec() };
+            shares_nothing_else(&PartView { mesh: &mesh, joints: &[], caps: &[] }, joint)
+        };
+        let joint = [[1, 2, 3], [2, 1, 4]];
+        assert!(shares_nothing_else(&[[1, 2, 3, 5], [2, 1, 4, 5]], &joint));
+        // An edge from 3 to 4, in no face of the joint.
+        assert!(!shares_nothing_else(&[[3, 4, 5, 6]], &joint));
+        // All edges of a face are in the joint, but the face is not.
+        assert!(!shares_nothing_else(&[[1, 2, 3, 4]], &[[1, 2, 4], [2, 3, 4], [3, 1, 4]]));
+    }
 }

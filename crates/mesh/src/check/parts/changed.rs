@@ -57,3 +57,21 @@ impl Changed<'_> {
         pairs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    #[test]
+    fn changed_parts_are_paired_with_all_parts_near_them() {
+        let at = |x: f64| Aabb { min: Point3::new(x, 0.0, 0.0), max: Point3::new(x + 1.0, 1.0, 1.0) };
+        let boxes = [2.4, 0.0, 0.8, 9.0, 1.6].map(at);
+        let pairs = |parts: &[u32]| Changed { boxes: &boxes, parts }.pairs();
+        assert_eq!(pairs(&[2]), [[1, 2], [2, 4]]);
+        // Pairs of two changed parts are found from both, and named once.
+        assert_eq!(pairs(&[0, 2, 4]), [[0, 4], [1, 2], [2, 4]]);
+        assert_eq!(pairs(&[3]), [[0; 2]; 0]);
+        assert_eq!(pairs(&[]), [[0; 2]; 0]);
+    }
+}

@@ -192,3 +192,45 @@ fn compare_points(a: &FacesApart, b: &FacesApart, differences: &mut JointDiffere
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Joint with these faces by ids.
+    fn joint(faces: &[[u32; 3]]) -> FacesApart {
+        let points = (0..10).map(|i| Point3::new(f64::from(i), f64::from(i * i), 0.0)).collect();
+        FacesApart { points, vertices: (0..10).collect(), faces: faces.to_vec() }
+    }
+
+    /// Differences of a joint from another, with the ids of the faces, and true if no face is common.
+    fn differences(a: &[[u32; 3]], b: &[[u32; 3]]) -> (Vec<(Line, Vec<i64>)>, bool) {
+        let mut differences = JointDifferences::default();
+        compare_faces(&joint(a), &joint(b), &mut differences);
+        (differences.found.into_iter().map(|(line, offender)| (line, offender.ids)).collect(), differences.all)
+    }
+
+    #[test]
+    fn faces_of_one_joint_alone_are_named() {
+        let all = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 5, 2]];
+        let turned = all.map(|[a, b, c]| [a, c, b]);
+        assert_eq!(differences(&all, &turned), (vec![], false));
+        // The first, a middle and the last one, in either joint.
+        for i in 0..4 {
+            let rest: Vec<[u32; 3]> = (0..4).filter(|&j| j != i).map(|j| turned[j]).collect();
+            let ids = |face: [u32; 3]| face.map(i64::from).to_vec();
+            assert_eq!(differences(&all, &rest), (vec![(Line::LabelsMatchBoundary, ids(all[i]))], false));
+            let other: Vec<[u32; 3]> = (0..4).filter(|&j| j != i).map(|j| all[j]).collect();
+            assert_eq!(differences(&other, &turned), (vec![(Line::LabelsMatchBoundary, ids(turned[i]))], false));
+        }
+    }
+
+    #[test]
+    fn joints_without_a_common_face_differ_entirely() {
+        let (found, all) = differences(&[[0, 1, 2]], &[[4, 5, 2]]);
+        assert!(all && found.iter().all(|(line, _)| *line == Line::LabelsMatchBoundary));
+        assert_eq!(found.len(), 2);
+        // Common, but with the same orientation.
+        assert_eq!(differences(&[[0, 1, 2]], &[[1, 2, 0]]), (vec![(Line::OppositeSides, vec![0, 1, 2])], false));
+    }
+}

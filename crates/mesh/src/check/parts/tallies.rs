@@ -63,3 +63,42 @@ fn tidy(offenders: &mut Vec<Offender>) -> u64 {
     offenders.dedup_by(|a, b| a.ids == b.ids);
     (before - offenders.len()) as u64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: Line = Line::FacesSharedByTwo;
+
+    fn point(id: u32) -> Offender {
+        Offender::new(OffenderKind::Point, &[id], None)
+    }
+
+    #[test]
+    fn offenders_are_held_up_to_a_limit() {
+        let mut tallies = Tallies::default();
+        let held = |tallies: &Tallies| tallies.0[&LINE].1.len();
+        for id in (0..4096).rev() {
+            tallies.add(LINE, point(id));
+        }
+        assert_eq!(held(&tallies), 4096);
+        tallies.add(LINE, point(5000));
+        assert_eq!(held(&tallies), KEPT_OFFENDERS);
+        let result = tallies.take(LINE);
+        assert_eq!((result.outcome, result.count, result.offenders.len()), (Outcome::Fail, 4097, KEPT_OFFENDERS));
+        assert!(
+            result.offenders.iter().map(|offender| &offender.ids).eq(&(0..1000).map(|id| vec![id]).collect::<Vec<_>>())
+        );
+        assert!(!tallies.fails(LINE));
+    }
+
+    #[test]
+    fn offenders_reported_by_two_parts_count_once() {
+        for count in [3, 2500_u32] {
+            let mut tallies = Tallies::default();
+            let twice = (0..count).chain(0..count).map(point);
+            tallies.add_some(LINE, 2 * u64::from(count), twice);
+            assert_eq!(tallies.take(LINE).count, u64::from(count));
+        }
+    }
+}

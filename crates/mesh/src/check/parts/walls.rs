@@ -103,7 +103,7 @@ pub(super) fn meetings(reader: Reader, boxes: &Boxes, memory: usize) -> io::Resu
 }
 
 /// Number of pairs, at least one, whose walls fit in memory.
-fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
+pub(super) fn fitting(reader: &Reader, pairs: &[[u32; 2]], memory: u64) -> usize {
     let mut needed: FxHashSet<u32> = FxHashSet::default();
     let mut bytes = 0;
     for (i, pair) in pairs.iter().enumerate() {
@@ -299,5 +299,57 @@ mod tests {
         // Without common ids, the edges coincide geometrically.
         let apart = test_pair(&wall(&[7, 9, 1, 2], &two, 1.0), &wall(&[17, 19, 3, 4], &two, -1.0));
         assert_eq!((apart.edges.len(), apart.intersections.len(), apart.twins.len()), (0, 4, 8));
+    }
+
+    #[test]
+    fn an_edge_with_two_faces_in_one_wall_and_one_in_the_other_is_no_rim() {
+        let two = wall(&[7, 9, 1, 2], &[[0, 1, 2], [1, 0, 3]], 1.0);
+        let one = wall(&[7, 9, 3], &[[0, 1, 2]], -1.0);
+        for (a, b) in [(&two, &one), (&one, &two)] {
+            assert_eq!(test_pair(a, b).edges.iter().map(|edge| edge.0).collect::<Vec<_>>(), [[7, 9]]);
+        }
+    }
+
+    #[test]
+    fn faces_beyond_a_side_of_a_box_are_not_near_it() {
+        let aabb = Aabb { min: Point3::new(0.0, 0.0, 0.0), max: Point3::new(1.0, 1.0, 1.0) };
+        let near = |corners: [[f64; 3]; 3]| {
+            let points = corners.map(Point3::from).to_vec();
+            let wall = Wall { aabb: Aabb::of_points(&points), points, ids: vec![4, 5, 6], faces: vec![[0, 1, 2]] };
+            !wall.faces_near(&aabb).is_empty()
+        };
+        for axis in 0..3 {
+            // On either side, and on the side itself.
+            for (x, is_near) in [(-0.1, false), (0.0, true), (0.5, true), (1.0, true), (1.1, false)] {
+                let at = |y: f64, z: f64| {
+                    let mut corner = [x; 3];
+                    (corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (y, z);
+                    corner
+                };
+                assert_eq!(near([at(0.2, 0.2), at(0.8, 0.2), at(0.2, 0.8)]), is_near, "{axis} {x}");
+                // Corners beyond all other sides.
+                assert_eq!(near([at(-3.0, -3.0), at(5.0, -3.0), at(0.5, 5.0)]), is_near, "{axis} {x}");
+            }
+        }
+        // Corners beyond different sides.
+        assert!(near([[-0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [0.5, 1.5, 0.5]]));
+    }
+
+    #[test]
+    fn large_walls_have_the_pairs_of_small_ones() {
+        // 100 boxes along x, and 100 that each overlap at most one of them.
+        let list = |shift: f64| -> Vec<(u32, Aabb)> {
+            let at = |i: u32| Aabb {
+                min: Point3::new(f64::from(i) + shift, 0.0, 0.0),
+                max: Point3::new(f64::from(i) + shift + 0.5, 1.0, 1.0),
+            };
+            (0..100).map(|i| (3 * i, at(i))).collect()
+        };
+        let (first, second) = (list(0.0), list(-0.7));
+        assert!(first.len() * second.len() > FEW);
+        // Box i of the second reaches from i - 0.7 to i - 0.2, and box i - 1 of the first to i - 0.5.
+        let expected: Vec<(u32, u32)> = (0..99).map(|i| (3 * i, 3 * (i + 1))).collect();
+        assert_eq!(overlapping(&first, &second), expected);
+        assert_eq!(overlapping(&first[..50], &second[..50]), expected[..49]);
     }
 }

@@ -38,6 +38,18 @@ fn genus_and_components_are_compared() {
 }
 
 #[test]
+fn surfaces_of_another_genus_are_named_by_their_smallest_vertex() {
+    let (mut cut, _) = with_part(&ring(4), cube_at([2.0, 0.0, 0.0], 1.0));
+    for loops in [vec![1, 1], vec![0, 0]] {
+        cut.expectation.loops = loops;
+        let (parts, whole) = (cut.check(), cut.whole());
+        same_offenders(&parts, &whole, Line::Loops);
+        let named = |report: &CheckReport| report.line(Line::Loops).unwrap().offenders.clone();
+        assert_eq!(named(&parts), named(&whole));
+    }
+}
+
+#[test]
 fn faults_inside_a_part_are_named_in_numbers_of_the_whole() {
     let inverted = planted(&bar(), |c| c.pieces[4].mesh.tets[7].swap(1, 2)).0;
     assert_same(&inverted);
@@ -131,7 +143,7 @@ fn joints_are_discs_without_common_vertices() {
     // A bar of square section cut lengthwise into four: neighbours meet in a strip, all four in a line.
     let quarters = voxels(2, vec![0], |[x, y, _]| Some(2 * x + y));
     assert_eq!(quarters.whole().verdict, Verdict::Valid);
-    assert!(quarters.failing().contains(&Line::BoundaryFans));
+    assert_eq!(quarters.failing(), [Line::BoundaryFans]);
     // A ring around a core: the joint is an annulus of four sides.
     let core = voxels(3, vec![0], |[x, y, _]| Some(u32::from(x == 1 && y == 1)));
     assert_eq!(core.failing(), [Line::BoundaryFans]);
@@ -160,7 +172,7 @@ fn faults_of_ids() {
 }
 
 /// Adds an unconnected part, and expects one more component.
-fn with_part(cut: &MemoryParts, mesh: TetMesh) -> (MemoryParts, Vec<Line>) {
+pub(super) fn with_part(cut: &MemoryParts, mesh: TetMesh) -> (MemoryParts, Vec<Line>) {
     planted(cut, |c| {
         let first = c.pieces.iter().flat_map(|p| &p.vertices).max().unwrap() + 1;
         let tets = c.pieces.iter().flat_map(|p| &p.tets).max().unwrap() + 1;
@@ -171,9 +183,18 @@ fn with_part(cut: &MemoryParts, mesh: TetMesh) -> (MemoryParts, Vec<Line>) {
     })
 }
 
-fn cube_at(corner: [f64; 3], size: f64) -> TetMesh {
+pub(super) fn cube_at(corner: [f64; 3], size: f64) -> TetMesh {
     let mut mesh = cube_lattice(2);
     mesh.points.iter_mut().for_each(|p| *p = Point3::from(p.coords * size + Vec3::from(corner)));
+    mesh
+}
+
+/// Mesh of two, the first one's points and tetrahedra first.
+pub(super) fn side_by_side(first: &TetMesh, second: &TetMesh) -> TetMesh {
+    let count = first.points.len() as u32;
+    let mut mesh = first.clone();
+    mesh.tets.extend(second.tets.iter().map(|t| t.map(|v| v + count)));
+    mesh.points.extend_from_slice(&second.points);
     mesh
 }
 
@@ -227,6 +248,13 @@ fn a_part_within_another_is_found_and_one_in_a_cavity_is_not() {
     let (parts, whole) = (nested.check(), nested.whole());
     same_offenders(&parts, &whole, Line::NoSelfIntersection);
     fails_alike(&parts, &whole);
+    let place = |report: &CheckReport| report.line(Line::NoSelfIntersection).unwrap().offenders[0].position;
+    assert_eq!(place(&parts), place(&whole));
+    // Both in one part, the inner one first.
+    let both = side_by_side(&cube_at([0.4, 0.4, 0.4], 0.2), &cube_at([0.0; 3], 1.0));
+    let both = MemoryParts::with_parts(&both, &vec![0; both.tets.len()], &[], vec![0, 0]);
+    assert_eq!(both.failing(), [Line::NoSelfIntersection]);
+    same_offenders(&both.check(), &both.whole(), Line::NoSelfIntersection);
     // A hollow block in two halves would have a joint that is no disc; in one part with a stem it is valid.
     let hollow = voxels(5, vec![0, 0], |c| {
         if c.iter().all(|&x| x == 1) {
@@ -253,6 +281,12 @@ fn faults_of_caps() {
     assert_same(&missing);
     let (_, lines) = planted(&bar, |c| drop(c.patches.remove(1)));
     assert_eq!(lines, [Line::WallOrCap, Line::CapPerTerminal]);
+    // Another disc of the same node.
+    let others: [fn(&mut Cap); 3] = [|cap| cap.radius = 0.98, |cap| cap.center.x = 0.01, |cap| cap.normal.x = 1e-12];
+    for change in others {
+        let (_, lines) = planted(&bar, |c| change(c.patches[1].cap.as_mut().unwrap()));
+        assert!(lines.contains(&Line::WallOrCap) && lines.contains(&Line::CapDisc), "{lines:?}");
+    }
     let (hole, lines) = planted(&bar, |c| {
         c.pieces[0].caps[0].1.remove(0);
     });

@@ -1,10 +1,13 @@
 //! Meshes cut into parts: the checks of parts and whole agree, and planted faults are found.
 
+mod contradictions;
 mod faults;
 mod hollow;
 mod images;
+mod meetings;
 mod pieces;
 mod random;
+mod served;
 
 use super::*;
 use crate::adjacency::{boundary_faces, face_vertices, tet_adjacency};
