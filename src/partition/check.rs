@@ -146,7 +146,7 @@ fn follows(
     let mut length = 0.0;
     for tube in tubes {
         // Written positively so that NaN fails.
-        let sound = tube.min_radius() > 0.0 && tube.length() > 0.0;
+        let sound = tube.ra > 0.0 && tube.rb > 0.0 && tube.length() > 0.0;
         if (tube.a - at).norm() > tolerance || !sound {
             return Err(flaw(tube.a));
         }
@@ -287,3 +287,7 @@ fn follows_clear(a: &Section, b: &Section) -> bool {
     let sine = a.axis.cross(&b.axis).norm();
     a.axis.dot(&b.axis) > 0.0 && a.height(&b.origin) > sine * b.radius && -b.height(&a.origin) > sine * a.radius
 }
+
+#[cfg(test)]
+#[path = "check_tests.rs"]
+mod tests;
