@@ -115,3 +115,81 @@ impl Tip {
         self.axis_point(height.clamp(self.reach[0], self.reach[1])) + lateral
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Vec3;
+    use proptest::prelude::*;
+
+    /// Tip of radius 2 at the origin, along x. Its cylinder reaches from -1 to 4, and its ball to 6.
+    fn tip() -> Tip {
+        let tip = Tip::new(Section::new(Point3::origin(), Vec3::x(), 2.0), 4.0 + 0.46);
+        assert!(tip.reach[0] == -1.0 && (tip.reach[1] - 4.0).abs() < 1e-12);
+        tip
+    }
+
+    fn tube(a: [f64; 3], b: [f64; 3], ra: f64, rb: f64) -> Tube {
+        Tube { a: a.into(), b: b.into(), ra, rb }
+    }
+
+    #[test]
+    fn a_tip_is_a_cylinder_and_half_a_ball() {
+        let closest = |p: [f64; 3]| tip().closest(&Point3::from(p));
+        for (p, expected) in [
+            ([1.0, 5.0, 0.0], [1.0, 2.0, 0.0]),
+            ([1.0, 1.0, 0.5], [1.0, 1.0, 0.5]),
+            ([-3.0, 0.0, 4.0], [-1.0, 0.0, 2.0]),
+            ([-3.0, 1.0, 0.0], [-1.0, 1.0, 0.0]),
+            ([9.0, 0.0, 0.0], [6.0, 0.0, 0.0]),
+            ([4.5, 0.5, 0.0], [4.5, 0.5, 0.0]),
+        ] {
+            assert!((closest(p) - Point3::from(expected)).norm() < 1e-9, "{p:?}: {}", closest(p));
+        }
+        let diagonal = closest([7.0, 3.0, 0.0]);
+        assert!((diagonal - Point3::new(4.0 + libm::sqrt(2.0), libm::sqrt(2.0), 0.0)).norm() < 1e-9, "{diagonal}");
+    }
+
+    #[test]
+    fn parallel_vessels_stay_the_blended_radii_apart() {
+        let beside = |distance: f64| tube([-9.0, distance, 0.0], [9.0, distance, 0.0], 1.0, 1.0);
+        // Distances of axes: 1.5 · (2 + 1), and 2 + 1.5 · 1 + 0.027 · 2.
+        assert!(!tip().clears(&beside(4.49), 1.5) && tip().clears(&beside(4.51), 1.5));
+        assert!(!tip().rim_clears(&beside(3.553), 1.5) && tip().rim_clears(&beside(3.555), 1.5));
+        // Beyond the ball, and before the cylinder.
+        let across = |x: f64| tube([x, -9.0, 0.0], [x, 9.0, 0.0], 1.0, 1.0);
+        assert!(!tip().clears(&across(8.49), 1.5) && tip().clears(&across(8.51), 1.5));
+        assert!(!tip().clears(&across(-3.49), 1.5) && tip().clears(&across(-3.51), 1.5));
+    }
+
+    #[test]
+    fn vessels_in_the_way_have_boxes_that_overlap() {
+        let bounds = tip().aabb(1.5);
+        assert!((bounds.min - Point3::new(-4.0, -3.0, -3.0)).norm() < 1e-9, "{}", bounds.min);
+        assert!((bounds.max - Point3::new(7.0, 3.0, 3.0)).norm() < 1e-9, "{}", bounds.max);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// The search agrees with samples along the vessel.
+        #[test]
+        fn cones_are_searched_for_their_closest_point(
+            a in prop::array::uniform3(-9.0..9.0_f64), b in prop::array::uniform3(-9.0..9.0_f64),
+            ra in 0.05..3.0_f64, rb in 0.05..3.0_f64, blending in 1.0..2.0_f64,
+        ) {
+            let (tip, cone) = (tip(), tube(a, b, ra, rb));
+            let spare = |k: i32| {
+                let t = f64::from(k) / 1000.0;
+                let p = cone.point(t);
+                (p - tip.closest(&p)).norm() - tip.margin(cone.radius(t), blending)
+            };
+            let least = (0..=1000).map(spare).fold(f64::INFINITY, f64::min);
+            // Samples are up to 0.03 apart.
+            prop_assume!(least.abs() > 0.05);
+            prop_assert_eq!(tip.clears(&cone, blending), least > 0.0);
+            let near = Aabb::of_points([&cone.a, &cone.b]).grown(blending * cone.max_radius());
+            prop_assert!(least > 0.0 || near.overlaps(&tip.aabb(blending)));
+        }
+    }
+}

@@ -16,3 +16,23 @@ pub(super) fn of_branch(stations: &[FineStation], branch: u32) -> &[FineStation]
     let count = stations[from..].partition_point(|station| station.branch == branch);
     &stations[from..from + count]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Point3;
+    use anastomesh_skeleton::FinePlace;
+
+    #[test]
+    fn stations_of_a_branch_are_consecutive() {
+        let place = FinePlace { at: Point3::origin(), within: 1.0, factor: 0.5 };
+        let station = |branch| FineStation { branch, arc: f64::from(branch), usual: 1.0, asked: 0.5, place };
+        let stations = [1, 1, 3, 3, 3, 4].map(station);
+        let count = |branch| {
+            let own = of_branch(&stations, branch);
+            assert!(own.iter().all(|station| station.branch == branch));
+            own.len()
+        };
+        assert_eq!([0, 1, 2, 3, 4, 5].map(count), [0, 2, 0, 3, 1, 0]);
+    }
+}
