@@ -235,12 +235,12 @@ impl Alike {
 /// Makes a block with the first strategy that succeeds: no error, no flat or slim tetrahedron, no fault in its own check.
 ///
 /// Otherwise the best block is returned. If no attempt gives a block, the failure of the first is returned, because the
-/// dump of the input reproduces it. The attempts end early if `is_over` is true. If the block `is_large`, ways like those that
-/// failed alike are left out.
+/// dump of the input reproduces it. Further attempts for which `is_over` is true are left out. If the block `is_large`, so are
+/// ways like those that failed alike.
 fn first_good(
     block: &str,
     attempts: Vec<BlockAttempt>,
-    (is_large, is_over): (bool, impl Fn() -> bool),
+    (is_large, is_over): (bool, impl Fn(&BlockParams) -> bool),
     mut make: impl FnMut(&BlockParams) -> Result<Finished, BlockError>,
 ) -> Tried {
     let mut failures: Vec<BlockError> = Vec::new();
@@ -253,10 +253,10 @@ fn first_good(
             best.params.allow_fused != attempt.params.allow_fused && Bar::of(&best.params).is_unfolded(made)
                 || tried > WAYS_OUT_OF_SLIM && Bar::of(&best.params).will_do(made)
         };
-        if best.as_ref().is_some_and(will_do) || tried > 0 && is_over() {
+        if best.as_ref().is_some_and(will_do) {
             break;
         }
-        if is_large && alike.is_enough(&attempt.params) {
+        if tried > 0 && is_over(&attempt.params) || is_large && alike.is_enough(&attempt.params) {
             continue;
         }
         match make(&attempt.params) {
@@ -300,11 +300,15 @@ pub fn cluster(
 ) -> Tried {
     let name = format!("cluster {}", id.0);
     let budget = BlockBudget::of(id, cluster, plan, effort, watch);
+    // A cluster that is made again with finer edges is not fused for that.
+    let may_exceed = first == RetryStrategy::Usual && !plan.fuse;
+    let budget = if may_exceed { budget.with_reserve(cluster) } else { budget };
     let made = |cluster: &Cluster| {
         let make = |params: &BlockParams| {
             budget.attempt(cluster, params, |watch| once::cluster(id, cluster, params, &original, watch))
         };
-        first_good(&name, attempts(plan, tangle, first), (budget.is_large, || budget.is_over()), make)
+        let is_over = |params: &BlockParams| budget.is_over_for(params);
+        first_good(&name, attempts(plan, tangle, first), (budget.is_large, is_over), make)
     };
     let tried = made(cluster);
     let open = tips::uncapped(cluster, &tried.result, &tried.failures);
@@ -384,7 +388,7 @@ fn divided(id: CutId, plan: &MeshPlan, mut make: impl FnMut(&BlockParams) -> Res
     };
     let mut before: Vec<BlockError> = Vec::new();
     let mut tried =
-        first_good(&format!("connector {}", id.0), (0..DIVISIONS).map(way).collect(), (false, || false), |params| {
+        first_good(&format!("connector {}", id.0), (0..DIVISIONS).map(way).collect(), (false, |_| false), |params| {
             let (made, divisions) = make(params)?;
             // A division that fails gives way to the next one at once.
             let failed = |attempt| BlockError::Connector { cut: id, at: [f64::NAN; 3], attempts: vec![attempt] };
@@ -417,7 +421,7 @@ mod tests {
                 name: first_division.to_string(),
                 params: BlockParams { first_division, ..usual },
             };
-            first_good("block", (0..results.len()).map(way).collect(), (false, || false), |params| {
+            first_good("block", (0..results.len()).map(way).collect(), (false, |_| false), |params| {
                 results[params.first_division].map(block).ok_or_else(failed)
             })
         };
@@ -459,7 +463,7 @@ mod tests {
         let way =
             |first_division| BlockAttempt { name: String::new(), params: BlockParams { first_division, ..usual } };
         let mut asked = 0;
-        let tried = first_good("block", (0..slim.len()).map(way).collect(), (false, || false), |params| {
+        let tried = first_good("block", (0..slim.len()).map(way).collect(), (false, |_| false), |params| {
             asked += 1;
             Ok(slim[params.first_division].clone())
         });
@@ -476,13 +480,14 @@ mod tests {
             asked.set(asked.get() + 1);
             Err(BlockError::Parameter { name: "none", value: f64::from(asked.get()) })
         };
-        let Tried { result, failures, .. } = first_good("block", attempts(), (false, || asked.get() >= 2), failed);
+        let Tried { result, failures, .. } =
+            first_good("block", attempts(), (false, |_: &BlockParams| asked.get() >= 2), failed);
         // The first failure counts, and the attempt that begins within the budget is not the last word.
         assert_eq!(result.err(), Some(BlockError::Parameter { name: "none", value: 1.0 }));
         assert_eq!((asked.get(), failures.len()), (2, 1));
         // One attempt is made in any case, or there would be no reason to report.
         asked.set(7);
-        assert!(first_good("block", attempts(), (false, || true), failed).result.is_err());
+        assert!(first_good("block", attempts(), (false, |_| true), failed).result.is_err());
         assert_eq!(asked.get(), 8);
     }
 
@@ -501,12 +506,34 @@ mod tests {
                 asked.push(params.first_division);
                 Err(BlockError::Parameter { name: "none", value: (params.first_division / 2) as f64 })
             };
-            assert!(first_good("block", attempts.clone(), (is_large, || false), failed).result.is_err());
+            assert!(first_good("block", attempts.clone(), (is_large, |_| false), failed).result.is_err());
             asked
         };
         assert_eq!(asked(false).len(), attempts.len());
         // Two of each kind.
         assert_eq!(asked(true), [0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_cluster_is_fused_when_other_attempts_have_used_the_budget() {
+        let points = [[0., 0., 0.], [20., 0., 0.], [20., 12., 0.], [10., 12., 0.], [10., -12., 0.]];
+        let network = anastomesh_skeleton::fixtures::network(&points, 1.0, &[(0, 1), (1, 2), (2, 3), (3, 4)]);
+        let params = crate::partition::PartitionParams { long: 1e9, ..Default::default() };
+        let crossing = crate::partition::partition(&network, &params).expect("a partition").clusters.remove(0);
+        let tried = |plan: &MeshPlan, effort, first| {
+            let tangle = (Tangle::Overlapping, first);
+            cluster(ClusterId(0), &crossing, (plan, effort), tangle, |node| node.0, &Watch::NOBODY)
+        };
+        let plan = MeshPlan::default();
+        let scarce = Effort::linear(1e5, 0.0);
+        let fused = tried(&plan, scarce, RetryStrategy::Usual);
+        assert_eq!(fused.way, "vessels that overlap taken as one, as usual");
+        assert!(fused.failures.len() == 1 && fused.failures[0].is_over_budget(), "{:?}", fused.failures);
+        let ample = tried(&plan, Effort::full(1), RetryStrategy::Usual);
+        assert_eq!((ample.result, ample.way), (fused.result, fused.way));
+        assert!(ample.failures.len() > 1 && ample.spent > fused.spent);
+        // A cluster whose wall meets another one stays as it is.
+        assert!(tried(&plan, scarce, RetryStrategy::FinerNarrower).result.is_err());
     }
 
     #[test]
