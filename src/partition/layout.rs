@@ -206,12 +206,9 @@ impl Clusters {
 fn collect_nodes(settler: &Settler, run: &BranchSpan, course: &Course, members: &mut Vec<(u32, NodeId)>) {
     let [lo, hi] = settler.range(run, course);
     let nodes = &course.branch.nodes;
-    for (i, (&node, &s)) in nodes.iter().zip(&course.branch.arc).enumerate() {
-        let end = i == 0 || i + 1 == nodes.len();
-        if !end && s > lo && s < hi {
-            members.push((run.root, node));
-        }
-    }
+    // Ends of the branch are at the range or beyond it.
+    let inner = nodes.iter().zip(&course.branch.arc).filter(|&(_, &s)| s > lo && s < hi);
+    members.extend(inner.map(|(&node, _)| (run.root, node)));
     for (node, slot) in course.branch.ends().into_iter().zip(run.slots) {
         if slot.is_none() {
             members.push((run.root, node));

@@ -13,6 +13,8 @@ mod summary;
 mod window;
 
 #[cfg(test)]
+mod layout_tests;
+#[cfg(test)]
 mod recorded;
 #[cfg(test)]
 mod tests;

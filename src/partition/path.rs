@@ -85,3 +85,63 @@ fn redundant(sections: &[Section]) -> bool {
             && s.axis.cross(&axis).norm() <= TOLERANCE
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::polyline;
+    use super::*;
+    use anastomesh_mesh::geometry::Point3;
+    use anastomesh_skeleton::course::Courses;
+
+    /// Section at `x` whose radius and axis are between those of two others.
+    fn section(x: f64, aside: f64, radius: f64, turn: f64) -> Section {
+        Section::new(Point3::new(x, aside, 0.0), Vec3::new(1.0, turn, 0.0), radius)
+    }
+
+    #[test]
+    fn sections_are_redundant_within_a_hundredth() {
+        // Halfway: radius 3, and an axis turned by 0.1.
+        let (a, b) = (section(0.0, 0.0, 2.0, 0.0), section(8.0, 0.0, 4.0, 0.2));
+        let is = |middle: Section| redundant(&[a, middle, b]);
+        assert!(is(section(4.0, 0.0, 3.0, 0.1)));
+        assert!(is(section(2.0, 0.0, 2.5, 0.05)));
+        assert!(is(section(4.0, 0.029, 3.0, 0.1)) && !is(section(4.0, 0.031, 3.0, 0.1)));
+        assert!(is(section(4.0, 0.0, 3.029, 0.1)) && !is(section(4.0, 0.0, 3.031, 0.1)));
+        assert!(is(section(4.0, 0.0, 2.971, 0.1)) && !is(section(4.0, 0.0, 2.969, 0.1)));
+        assert!(is(section(4.0, 0.0, 3.0, 0.109)) && !is(section(4.0, 0.0, 3.0, 0.111)));
+        // Before the first section, at it, and beyond the last one.
+        assert!(!is(section(-0.5, 0.0, 1.875, -0.0125)));
+        assert!(!is(section(0.0, 0.0, 2.0, 0.0)));
+        assert!(!is(section(8.5, 0.0, 4.125, 0.2125)));
+        // All inner sections count.
+        assert!(!redundant(&[a, section(2.0, 0.5, 2.5, 0.05), section(4.0, 0.0, 3.0, 0.1), b]));
+        assert!(!redundant(&[a, section(2.0, 0.0, 2.5, 0.05), section(4.0, 0.5, 3.0, 0.1), b]));
+    }
+
+    #[test]
+    fn a_step_omits_63_sections_at_most() {
+        let xs = |kept: Vec<Section>| kept.iter().map(|s| s.origin.x).collect::<Vec<f64>>();
+        let straight: Vec<Section> = (0..200).map(|i| section(f64::from(i), 0.0, 1.0, 0.0)).collect();
+        assert_eq!(xs(simplified(&straight)), [0.0, 64.0, 128.0, 192.0, 199.0]);
+        // A corner stays.
+        let bent: Vec<Section> =
+            (0..=20).map(|i| section(f64::from(i), (f64::from(i) - 10.0).max(0.0), 1.0, 0.0)).collect();
+        assert_eq!(xs(simplified(&bent)), [0.0, 10.0, 20.0]);
+        assert_eq!(xs(simplified(&straight[..2])), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn stations_are_evenly_spaced_between_the_planes() {
+        let mut skeleton = polyline([[0.0; 3], [10.0, 0.0, 0.0]]);
+        skeleton.edges[0].radii = [0.5; 2];
+        let chains = skeleton.chains(&skeleton.adjacency());
+        let course = Courses { skeleton: &skeleton, chains: &chains }.get(0);
+        // Three quarters of the radius: 0.375. The last interval is rounded to the nearest number of them.
+        for (hi, intervals) in [(6.0, 11), (5.85, 10), (5.95, 11), (2.3, 1), (2.1, 1)] {
+            let expected = (1..intervals).map(|i| 2.0 + (hi - 2.0) * f64::from(i) / f64::from(intervals));
+            let found = stations(&course, [2.0, hi]);
+            assert_eq!(found.len() + 1, intervals as usize, "{hi}");
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{hi}: {found:?}");
+        }
+    }
+}

@@ -365,6 +365,10 @@ fn bad_input_is_an_error() {
         partition(&bad, &PartitionParams::default()),
         Err(PartitionError::BadEdge { edge: anastomesh_skeleton::EdgeId(1), .. })
     ));
+    for radius in [0.0, -1.0, f64::INFINITY] {
+        bad.edges[1].radii[0] = radius;
+        assert!(matches!(partition(&bad, &PartitionParams::default()), Err(PartitionError::BadEdge { .. })));
+    }
     bad.edges[1].nodes[1] = NodeId(77);
     assert!(matches!(partition(&bad, &PartitionParams::default()), Err(PartitionError::NoSuchNode { .. })));
     let params = PartitionParams { rho: 0.0, ..PartitionParams::default() };

@@ -1,0 +1,144 @@
+//! Clusters of a layout: sizes of edges, summary figures, clusters that are cut again.
+
+use super::near::terminal_overrun;
+use super::parts::{PartitionWarning, UncutReason};
+use super::tests::{h_shape, polyline, skeleton};
+use super::*;
+use anastomesh_mesh::geometry::Point3;
+use anastomesh_skeleton::course::{Courses, Way};
+use anastomesh_skeleton::{NodeSizes, SizeAt, SizeField};
+
+fn layout(skeleton: &Skeleton, params: &PartitionParams) -> Layout {
+    lay_out(&Arc::new(skeleton.clone()), params, &()).expect("a layout")
+}
+
+fn usual(skeleton: &Skeleton) -> Layout {
+    layout(skeleton, &PartitionParams::default())
+}
+
+#[test]
+fn connectors_keep_away_from_places_with_shorter_edges() {
+    let long = h_shape(80.0);
+    // Edges half as long as usual around the middle of the bridge.
+    let points: Vec<Point3> = (0..=80).map(|i| Point3::new(f64::from(i), 0.0, 0.0)).collect();
+    let rho = PartitionParams::default().rho;
+    let lengths: Vec<f64> = points.iter().map(|p| if (p.x - 40.0).abs() <= 2.0 { 0.9 / rho } else { 9.0 }).collect();
+    let field = SizeField::new("size", &points, &lengths).expect("lengths");
+    let params = PartitionParams { size_field: Some(field), ..PartitionParams::default() };
+    let fine = layout(&long, &params);
+    let stations = fine.fine_stations();
+    assert!(stations.len() > 2 && stations.iter().all(|station| (station.arc - 40.0).abs() < 3.0), "{stations:?}");
+    let explicit = fine.explicit();
+    assert_eq!(check_partition(&long, &explicit), Ok(()));
+    assert_eq!((explicit.cuts.len(), usual(&long).cuts_len()), (2, 1));
+    for station in stations {
+        let [lo, hi] = [-1.0, 1.0].map(|sign| station.arc + sign * station.reach());
+        assert!(explicit.cut_arcs.iter().all(|&[from, to]| to <= lo || hi <= from), "{:?}", explicit.cut_arcs);
+    }
+    // Every station is in the cluster of its piece.
+    let places: Vec<_> = explicit.clusters.iter().map(|cluster| cluster.fine.len()).collect();
+    assert_eq!(places.iter().sum::<usize>(), stations.len());
+    assert_eq!(places.iter().filter(|count| **count > 0).count(), 1);
+}
+
+#[test]
+fn sizes_are_interpolated_in_the_middle_of_a_vessel() {
+    let vessel = polyline([[0.0; 3], [10.0, 0.0, 0.0], [30.0, 0.0, 0.0]]);
+    let sized = |values: &[f64], skeleton: &Skeleton| {
+        let sizes = SizeAt::Nodes(NodeSizes::new("size", values).expect("values"));
+        usual(skeleton).sized(Some(sizes)).cluster(ClusterId(0)).size
+    };
+    // The middle is at 15: a quarter of the way from the second node to the third.
+    assert!(sized(&[0.1, 0.5, 0.9], &vessel).is_some_and(|size| (size - 0.6).abs() < 1e-12));
+    assert_eq!(sized(&[0.25, 0.5], &polyline([[0.0; 3], [10.0, 0.0, 0.0]])), Some(0.375));
+    // Clusters with several vessels have none.
+    assert_eq!(sized(&[0.5; 6], &h_shape(12.0)), None);
+    assert_eq!(usual(&vessel).cluster(ClusterId(0)).size, None);
+}
+
+#[test]
+fn forks_with_shorter_edges_do_not_depend_on_the_unit() {
+    // Arms that bend soon after their junction.
+    let points = [[0.0; 3], [-9.0, 0.0, 0.0], [1.5, 1.0, 0.0], [2.0, 9.0, 0.0], [1.5, -1.0, 0.5], [9.0, -2.0, 0.0]];
+    let fork = |unit: f64| {
+        let points = points.map(|p| (p.map(|x| x * unit), unit));
+        let skeleton = skeleton(&points, &[[0, 1], [0, 2], [2, 3], [0, 4], [4, 5]]);
+        let fine = usual(&skeleton).sized(Some(SizeAt::Forks(0.5))).cluster(ClusterId(0)).fine;
+        assert_eq!(fine.len(), 1);
+        assert_eq!((fine[0].at, fine[0].factor), (Point3::origin(), 0.5));
+        fine[0].within / unit
+    };
+    let within = fork(1.0);
+    assert!(within > 1.0 && [0.125, 8.0].into_iter().all(|unit| (fork(unit) - within).abs() < 1e-9), "{within}");
+}
+
+#[test]
+fn clusters_with_a_junction_are_counted() {
+    let junctions = |skeleton: &Skeleton| {
+        let summary = usual(skeleton).summary();
+        (summary.clusters, summary.cuts, summary.junction_clusters)
+    };
+    assert_eq!(junctions(&h_shape(12.0)), (2, 1, 2));
+    assert_eq!(junctions(&polyline([[0.0; 3], [9.0, 0.0, 0.0]])), (1, 0, 0));
+    // A ring that is cut twice: the cluster of its first node has two pieces and no junction. With a tail, it has one.
+    let ring = |size: f64, tail: bool| {
+        let mut points =
+            vec![([0.0; 3], 1.0), ([size, 0.0, 0.0], 1.0), ([size, size, 0.0], 1.0), ([0.0, size, 0.0], 1.0)];
+        let mut edges = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+        if tail {
+            points.push(([-9.0, -9.0, 0.0], 1.0));
+            edges.push([0, 4]);
+        }
+        skeleton(&points, &edges)
+    };
+    assert_eq!(junctions(&ring(9.0, false)), (2, 2, 0));
+    assert_eq!(junctions(&ring(9.0, true)), (2, 2, 1));
+    // Two pieces with one end.
+    assert_eq!(junctions(&ring(8.0, true)), (1, 0, 1));
+}
+
+#[test]
+fn obstructed_terminals_are_counted_by_kind() {
+    let counts = |distance: f64| {
+        let points =
+            [[0.0; 3], [9.0, 0.0, 0.0], [-9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [6.0, 9.0, 0.0], [6.0, distance, 0.0]];
+        let hook = skeleton(&points.map(|p| (p, 1.0)), &[[0, 1], [0, 2], [0, 3], [3, 4], [4, 5]]);
+        let summary = usual(&hook).summary();
+        (summary.short_overruns, summary.caps_not_clear)
+    };
+    // Distances of a tip from another vessel.
+    assert_eq!([2.3, 2.5, 3.0, 3.2].map(counts), [(0, 1), (1, 0), (1, 0), (0, 0)]);
+}
+
+#[test]
+fn large_clusters_are_cut_where_there_is_little_space() {
+    // Both ends need 2.2 radii, and less in large clusters. The connector needs 1.
+    let bridge = h_shape(5.2);
+    let of = |large: usize| {
+        let layout = layout(&bridge, &PartitionParams { large, ..PartitionParams::default() });
+        (
+            layout.clusters_len(),
+            layout.largest_nodes(),
+            layout.uncut().iter().any(|(_, why)| *why == UncutReason::Length),
+        )
+    };
+    assert_eq!([of(100), of(6), of(5), of(2)], [(1, 6, true), (1, 6, true), (2, 3, false), (2, 3, false)]);
+    // Without a smaller cluster, the usual cuts stay.
+    let short = h_shape(4.5);
+    let with = |large: usize| layout(&short, &PartitionParams { large, ..PartitionParams::default() });
+    assert_eq!(with(2).explicit(), with(100).explicit());
+}
+
+#[test]
+fn tips_continue_their_vessel() {
+    let vessel = polyline([[1.0, 0.0, 0.0], [9.0, 0.0, 0.0]]);
+    let chains = vessel.chains(&vessel.adjacency());
+    let course = Courses { skeleton: &vessel, chains: &chains }.get(0);
+    let params = PartitionParams::default();
+    let [back, onward] = [Way::Back, Way::Onward].map(|end| terminal_overrun(&course, end, &params));
+    let length = onward.length();
+    assert!(length > 0.0 && (back.length() - length).abs() < 1e-12);
+    assert_eq!((onward.a.x, back.a.x), (9.0, 1.0));
+    assert!((onward.b - Point3::new(9.0 + length, 0.0, 0.0)).norm() < 1e-12);
+    assert!((back.b - Point3::new(1.0 - length, 0.0, 0.0)).norm() < 1e-12);
+}
