@@ -1,7 +1,7 @@
 //! Each condition of the check, by a partition that violates it alone.
 
 use super::super::tests::{h_shape, polyline};
-use super::super::{PartitionParams, partition};
+use super::super::{Cluster, PartitionParams, partition};
 use super::*;
 use anastomesh_mesh::geometry::Vec3;
 use anastomesh_skeleton::Skeleton;
@@ -221,7 +221,7 @@ fn clusters_are_connected() {
         first.ends.extend(second.ends.into_iter().map(|end| ClusterEnd { overrun: end.overrun + tubes, ..end }));
     });
     assert_eq!(merged, Err(PartitionFlaw::Disconnected { cluster: ClusterId(0) }));
-    let empty = sound.after(|p| p.clusters.push(Default::default()));
+    let empty = sound.after(|p| p.clusters.push(Cluster::default()));
     assert_eq!(empty, Err(PartitionFlaw::Disconnected { cluster: ClusterId(2) }));
 }
 

@@ -1,7 +1,7 @@
 //! Clusters of a layout: sizes of edges, summary figures, clusters that are cut again.
 
 use super::near::terminal_overrun;
-use super::parts::{PartitionWarning, UncutReason};
+use super::parts::UncutReason;
 use super::tests::{h_shape, polyline, skeleton};
 use super::*;
 use anastomesh_mesh::geometry::Point3;

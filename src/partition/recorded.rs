@@ -41,7 +41,8 @@ fn text(layout: &Layout) -> String {
         for ClusterEnd { section, kind, overrun } in &cluster.ends {
             let [x, y, z]: [f64; 3] = section.origin.into();
             let beyond = cluster.tubes[*overrun as usize].length();
-            writeln!(out, "  {kind:?} at {x:.4} {y:.4} {z:.4}, radius {:.4}, overrun {beyond:.4}", section.radius)
+            let up = section.up.map_or(String::new(), |up| format!(", up {:.4?}", <[f64; 3]>::from(up)));
+            writeln!(out, "  {kind:?} at {x:.4} {y:.4} {z:.4}, radius {:.4}, overrun {beyond:.4}{up}", section.radius)
                 .expect("text");
         }
     }
