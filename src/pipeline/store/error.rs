@@ -177,6 +177,14 @@ mod tests {
     }
 
     #[test]
+    fn differences_name_what_has_changed() {
+        let [name, was, is] = ["mesh.rho", "3.0", "4.0"].map(str::to_owned);
+        assert_eq!(Difference::Option { name, was, is }.to_string(), "other options (mesh.rho was 3.0, now 4.0)");
+        assert_eq!(Difference::Network.to_string(), "another network");
+        assert_eq!(Difference::Version("0.9".into()).to_string(), "another version of the program (0.9)");
+    }
+
+    #[test]
     fn ten_missing_shards_are_listed() {
         let shards: Vec<Shard> = Shard::all(12).collect();
         assert_eq!(listed(&shards[..1]), "shard 1/12 is");

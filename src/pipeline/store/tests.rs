@@ -5,7 +5,7 @@ use std::io::Write;
 
 use super::error::Difference;
 use super::*;
-use anastomesh_mesh::geometry::Point3;
+use anastomesh_mesh::geometry::{Point3, Section, Vec3};
 use anastomesh_skeleton::{Node, Skeleton};
 
 fn key(i: u32) -> Key {
@@ -148,6 +148,98 @@ fn keys_tell_neighbours_apart() {
     };
     assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
     assert_ne!(KeyMaker::new("a").finish(), KeyMaker::new("b").finish());
+    assert_eq!(Key(4 << 96 | 3 << 64 | 2 << 32 | 1).short(), [1, 2, 3]);
+}
+
+#[test]
+fn every_number_of_a_section_counts_for_its_key() {
+    let of = |section: &Section| {
+        let mut maker = KeyMaker::new("test");
+        maker.section(section);
+        maker.finish()
+    };
+    let section = Section { up: Some(Vec3::y()), ..Section::new(Point3::new(1.0, 2.0, 3.0), Vec3::x(), 0.5) };
+    let mut others = vec![Section { radius: 0.25, ..section }, Section { up: None, ..section }];
+    for axis in 0..3 {
+        let other = |change: fn(&mut Section) -> &mut [f64]| {
+            let mut other = section;
+            change(&mut other)[axis] += 1e-15;
+            other
+        };
+        others.push(other(|section| section.axis.as_mut_slice()));
+        others.push(other(|section| section.origin.coords.as_mut_slice()));
+        others.push(other(|section| section.up.as_mut().map_or(&mut [], |up| up.as_mut_slice())));
+    }
+    let keys: std::collections::BTreeSet<Key> = others.iter().chain([&section]).map(of).collect();
+    assert_eq!(keys.len(), others.len() + 1);
+}
+
+#[test]
+fn pieces_of_tissue_are_kept_like_blocks() {
+    use anastomesh_domain::Shelf;
+    let store = Store::in_memory();
+    let (first, second) = (vec![1, 2, 3], vec![4, 5, 6, 7]);
+    let [a, b] = [(9, first), (8, second)].map(|(key, bytes)| Shelf::keep(&store, key, bytes).expect("kept"));
+    assert_eq!([9, 8, 7].map(|key| Shelf::find(&store, key)), [Some(a), Some(b), None]);
+    assert_eq!(Shelf::read(&store, b, 1..3).expect("readable"), [5, 6]);
+    assert_eq!(Shelf::read(&store, a, 0..3).expect("readable"), [1, 2, 3]);
+    assert!(Shelf::read(&store, a, 0..4).is_err());
+}
+
+#[test]
+fn files_that_cannot_be_read_are_errors_and_no_missing_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let open = || Store::in_folder(folder.path(), &manifest(3.0), false);
+    for name in
+        ["anastomesh.json", "anastomesh.shards", "anastomesh.shard_1_of_1.done", "anastomesh.shard_1_of_1.blocks"]
+    {
+        drop(open().expect("a work directory"));
+        if name.contains("_of_") {
+            fs::write(folder.path().join("anastomesh.shards"), "1").expect("written");
+            fs::write(folder.path().join("anastomesh.shard_1_of_1.done"), "{\"bytes\":0}").expect("written");
+        }
+        let path = folder.path().join(name);
+        let _ = fs::remove_file(&path);
+        // A folder in its place.
+        fs::create_dir(&path).expect("a folder");
+        let failed = open().expect_err(name);
+        assert!(matches!(failed, StoreError::Folder { .. }), "{name}: {failed}");
+        fs::remove_dir(&path).expect("removed");
+        for entry in fs::read_dir(folder.path()).expect("readable") {
+            fs::remove_file(entry.expect("an entry").path()).expect("removed");
+        }
+    }
+}
+
+#[test]
+fn positions_outside_their_files_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = open(folder.path());
+    fill(&store, 0..3);
+    let ids = (0..3).map(|i| store.find(key(i)).expect("kept"));
+    let extents = store.extents(ids).expect("in a folder");
+    assert!(Store::in_memory().extents([].into_iter()).is_none());
+    let again = |text: String| {
+        let extents: Extents = serde_json::from_str(&text).expect("positions");
+        Store::of_extents(folder.path(), &extents)
+    };
+    let text = serde_json::to_string(&extents).expect("text");
+    let read = again(text.clone()).expect("sound");
+    for i in 0..3 {
+        let bytes = record(i);
+        assert_eq!(read.bytes(Extents::record(i as usize)).get(0..bytes.len() as u64).expect("readable")[..], bytes);
+    }
+    let [file, start, end] = {
+        let value: serde_json::Value = serde_json::from_str(&text).expect("text");
+        assert_eq!(value["files"].as_array().map(Vec::len), Some(1));
+        [0, 1, 2].map(|i| value["places"][1][i].as_u64().expect("a number"))
+    };
+    let place = format!("[{file},{start},{end}]");
+    let with = |other: String| again(text.replace(&place, &other)).is_some();
+    assert!(with(format!("[0,{start},{start}]")) && with(place.clone()));
+    assert!(!with(format!("[1,{start},{end}]")) && !with(format!("[0,{end},{start}]")));
+    let names = text.replace(&format!("{:?}", b"anastomesh.blocks").replace(' ', ""), "[46,46]");
+    assert!(names != text && again(names).is_none(), "a name that leads out of the folder");
 }
 
 #[test]
@@ -184,4 +276,9 @@ fn shards_are_joined_when_all_are_complete() {
     }
     fs::write(&path, &whole).expect("written");
     assert_holds(&open(alone).expect("both exist"), 7);
+    // A shard that is made again is not finished until it is marked.
+    drop(open(Role::Shard(shards[0])).expect("a shard"));
+    assert!(matches!(open(alone), Err(StoreError::Missing { .. })));
+    let rest = open(Role::Alone { restart: false, make_missing: true }).expect("the rest is made");
+    assert_holds(&rest, 7);
 }
