@@ -404,6 +404,8 @@ fn where_a_block_is_missing_the_others_end_in_patches_of_their_own() {
         meshed.mesh.patches.iter().filter(|patch| patch.name.starts_with("missing_")).collect();
     assert!(!missing.is_empty(), "{:?}", meshed.mesh.patches);
     assert!(missing.iter().all(|patch| meshed.mesh.boundary_patch.contains(&patch.id)), "each disc has faces");
+    let ids: std::collections::BTreeSet<i32> = meshed.mesh.patches.iter().map(|patch| patch.id).collect();
+    assert_eq!(ids.len(), meshed.mesh.patches.len());
 }
 
 /// Requests a stop after a number of blocks.

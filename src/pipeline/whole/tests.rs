@@ -103,6 +103,10 @@ fn a_whole_in_a_work_directory_is_read_again_without_its_network() {
     assert!(broken(&|plan| plan.counts.points = usize::MAX));
     assert!(broken(&|plan| plan.clusters += 1));
     assert!(broken(&|plan| plan.joined[0][1].0 = u32::MAX));
-    assert!(broken(&|plan| plan.open.extend([(JointPlace { part: u32::MAX, joint: 0 }, 1)])));
+    assert!(broken(&|plan| plan.joined[0][1].0 = plan.parts.len() as u32));
+    let open = |plan: &mut Numbering, part: usize| {
+        plan.open.insert(JointPlace { part: part as u32, joint: 0 }, 1);
+    };
+    assert!(broken(&|plan| open(plan, plan.parts.len())) && !broken(&|plan| open(plan, 0)));
     assert!(!broken(&|_| ()));
 }
