@@ -196,6 +196,7 @@ mod tests {
     use super::*;
     use crate::partition::{PartitionParams, partition};
     use crate::surface::{Finer, SurfaceParams, vessel_wall};
+    use anastomesh_mesh::budget::Budget;
     use anastomesh_mesh::shapes::sphere_surface;
     use anastomesh_skeleton::fixtures::network;
 
@@ -238,6 +239,14 @@ mod tests {
         let tight = helix(1.7);
         let found = of(&tight);
         assert!(found.fused.is_some() && found.outside.is_none(), "{found:?}");
+        let near = helix(2.59);
+        let (wall, budget) = (wall(&near), Budget::new(1 << 40));
+        assert_eq!(fused(&wall, &near, &Watch::NOBODY.within(&budget)).unwrap(), None);
+        let widened = widened(&near);
+        let pairs = widened.overlaps(&widened.adjacency()).pairs.len() as u64;
+        assert!(pairs > FEW as u64);
+        // The first searches pass over all triangles, further ones over a tree.
+        assert_eq!(budget.spent(), 20 * pairs + 8 * (wall.triangles.len() / 16) as u64);
     }
 
     #[test]
@@ -324,6 +333,7 @@ mod tests {
         for (p, q, expected) in [
             (below, [1.0, 1.0, 1.0], true),
             (below, [1.0, 1.0, 0.0], true),
+            ([1.0, 1.0, 1.0], [1.0, 1.0, 0.0], true),
             (below, [1.0, 1.0, -0.5], false),
             ([1.0, 1.0, 2.0], [1.0, 1.0, 1.0], false),
             ([2.0, 2.0, -1.0], [2.0, 2.0, 1.0], true),

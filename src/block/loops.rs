@@ -129,6 +129,16 @@ mod tests {
     }
 
     #[test]
+    fn operations_are_counted() {
+        let spent = |radius: f64| {
+            let budget = Budget::new(1 << 40);
+            Loops::of(&ring(radius), 0, &Watch::NOBODY.within(&budget)).unwrap();
+            budget.spent()
+        };
+        assert_eq!([0.9, 1.2, 5.0].map(spent), [49, 85, 21]);
+    }
+
+    #[test]
     fn loops_are_filled_in_any_place_and_unit() {
         for (radius, filled) in [(1.2, true), (1.6, false)] {
             let mut moved = ring(radius);

@@ -177,8 +177,7 @@ pub struct Program {
 }
 
 fn is_chosen(program: &Program, packages: &[String]) -> bool {
-    packages.iter().any(|package| *package == program.package)
-        || (program.is_lib && packages.contains(&format!("{}{LIB}", program.package)))
+    packages.contains(&program.package) || (program.is_lib && packages.contains(&format!("{}{LIB}", program.package)))
 }
 
 fn program(message: &Value) -> Option<Program> {

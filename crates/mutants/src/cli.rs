@@ -10,6 +10,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -69,12 +70,18 @@ fn options(arguments: &[String]) -> Option<Options> {
     (!options.parts.is_empty() && !options.packages.is_empty()).then_some(options)
 }
 
-/// Runs the program with these arguments.
-///
-/// # Errors
-///
-/// The arguments are wrong, or the sources cannot be built.
-pub fn run(arguments: &[String]) -> io::Result<()> {
+/// Runs the program `anastomesh-mutants`.
+pub fn program() -> ExitCode {
+    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> io::Result<()> {
     let Some(options) = options(arguments) else {
         println!("{HELP}");
         return if arguments.iter().any(|argument| argument == "--help") {
