@@ -15,9 +15,9 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
     let mut wrong = Vec::new();
     for group in edges.chunk_by(|a, b| a.ends == b.ends) {
         for pair in group.windows(2) {
-            surfaces.join(pair[0].corner / 3, pair[1].corner / 3);
+            surfaces.join(pair[0].face, pair[1].face);
             for end in 0..2 {
-                fans.join(pair[0].corner_at(end), pair[1].corner_at(end));
+                fans.join(pair[0].corners[end], pair[1].corners[end]);
             }
         }
         if group.len() != 2 || group[0].is_reversed == group[1].is_reversed {
@@ -44,29 +44,30 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
     }
 }
 
-/// Side of a boundary face.
-struct Edge {
-    ends: [u32; 2],
-    is_reversed: bool,
-    /// Corner of the face at which the side starts.
-    corner: u32,
+/// Side of a triangle.
+pub struct Edge {
+    /// Smaller and larger vertex.
+    pub ends: [u32; 2],
+    /// True if the triangle passes from the larger to the smaller vertex.
+    pub is_reversed: bool,
+    /// Number of the triangle.
+    pub face: u32,
+    /// Corners of the triangle at both ends.
+    corners: [u32; 2],
 }
 
-impl Edge {
-    /// Corner of the face at the smaller (0) or larger end (1).
-    fn corner_at(&self, end: u32) -> u32 {
-        if (end == 1) == self.is_reversed { self.corner } else { self.corner / 3 * 3 + (self.corner + 1) % 3 }
-    }
-}
-
-fn edges(faces: &[[u32; 3]]) -> Vec<Edge> {
-    let corners = faces.as_flattened();
-    let edge = |corner: u32| {
-        let (a, b) = (corners[corner as usize], corners[(corner / 3 * 3 + (corner + 1) % 3) as usize]);
-        Edge { ends: [a.min(b), a.max(b)], is_reversed: a > b, corner }
+/// Sides of triangles, sorted by their ends.
+pub fn edges(faces: &[[u32; 3]]) -> Vec<Edge> {
+    let vertices = faces.as_flattened();
+    let edge = |from: u32| {
+        let to = from / 3 * 3 + (from + 1) % 3;
+        let [a, b] = [from, to].map(|corner| vertices[corner as usize]);
+        let is_reversed = a > b;
+        let (ends, corners) = if is_reversed { ([b, a], [to, from]) } else { ([a, b], [from, to]) };
+        Edge { ends, is_reversed, face: from / 3, corners }
     };
-    let mut edges: Vec<Edge> = (0..corners.len() as u32).map(edge).collect();
-    edges.sort_unstable_by_key(|edge| (edge.ends, edge.corner));
+    let mut edges: Vec<Edge> = (0..vertices.len() as u32).map(edge).collect();
+    edges.sort_unstable_by_key(|edge| (edge.ends, edge.corners));
     edges
 }
 

@@ -141,5 +141,11 @@ mod tests {
         let text = b"Test Using Larger Than Block-Size Key - Hash Key First";
         let expected = "60e431591ee0b67f0d8a26aacbf5b77f8e0bc6213728c5140546040f0ee37f54";
         assert_eq!(seal(text, Some(&[0xaa; 131])), expected);
+        // Python's hmac, with keys of one block and of one byte more.
+        let bytes: Vec<u8> = (0..65).collect();
+        let expected = "6ab541b4869dca71c4ca11d8bb1b02533b789a557583161429292c7404bc21f6";
+        assert_eq!(seal(b"abc", Some(&bytes[..64])), expected);
+        let expected = "dfbffee4671bad00ed5d1e1999d55ed3b0cc774ac357f9ebf649c1612414fcec";
+        assert_eq!(seal(b"abc", Some(&bytes)), expected);
     }
 }

@@ -79,14 +79,14 @@ fn meets([p, q]: [&Point; 2], t: [&Point; 3], axes: [usize; 2]) -> bool {
 
 fn meets_in_plane([p, q]: [[f64; 2]; 2], t: [[f64; 2]; 3]) -> bool {
     let turn = orient_2d(t[0], t[1], t[2]);
-    let contains = |p| (0..3).all(|i| orient_2d(t[i], t[(i + 1) % 3], p) * turn >= 0);
+    let contains = |p| (0..3).all(|i| orient_2d(t[i], t[(i + 1) % 3], p) != -turn);
     let cross = |i: usize| {
         let (a, b) = (t[i], t[(i + 1) % 3]);
-        let [c, d, e, f] = [orient_2d(p, q, a), orient_2d(p, q, b), orient_2d(a, b, p), orient_2d(a, b, q)];
         // Collinear sides are left to other sides and to the ends.
-        c * d <= 0 && e * f <= 0 && (c, d) != (0, 0)
+        orient_2d(p, q, a) != orient_2d(p, q, b) && orient_2d(a, b, p) != orient_2d(a, b, q)
     };
-    contains(p) || contains(q) || (0..3).any(cross)
+    // With an end outside, a segment that meets the triangle meets a side.
+    contains(p) || (0..3).any(cross)
 }
 
 /// Returns how often a closed surface winds around a point that is not on it.
@@ -97,27 +97,28 @@ pub fn winding(p: &Point, triangles: &[[Point; 3]]) -> i32 {
 /// Signed passages of a ray in direction +x through a triangle: 1 outwards, -1 inwards. The ray starts at a point moved
 /// by an infinitesimal in y, and by a smaller one in z.
 fn passed(p: &Point, t: &[Point; 3]) -> i32 {
-    let beyond = |k: usize, is_above: bool| t.iter().all(|q| if is_above { q[k] > p[k] } else { q[k] < p[k] });
-    if beyond(0, false) || (1..3).any(|k| beyond(k, true) || beyond(k, false)) {
+    if !may_pass(p, t) {
         return 0;
     }
-    let [a, b, c] = [0, 1, 2].map(|i| flat(&t[i], [1, 2]));
-    let p_flat = flat(p, [1, 2]);
-    let turns = [turn(a, b, p_flat), turn(b, c, p_flat), turn(c, a, p_flat)];
-    if turns[0] != turns[1] || turns[1] != turns[2] || turns[0] == 0 {
-        return 0;
-    }
+    let [a, b, c, start] = [&t[0], &t[1], &t[2], p].map(|q| flat(q, [1, 2]));
+    let turns = [turn(a, b, start), turn(b, c, start), turn(c, a, start)];
     // The outward normal has the sign of the turn along x. The ray passes if the point lies on the inner side.
-    if orient_3d(&t[0], &t[1], &t[2], p) * turns[0] < 0 { turns[0] } else { 0 }
+    let is_passed = turns == [turns[0]; 3] && orient_3d(&t[0], &t[1], &t[2], p) == -turns[0];
+    if is_passed { turns[0] } else { 0 }
+}
+
+/// False if all vertices of a triangle are behind a point, or on one side of it.
+fn may_pass(p: &Point, t: &[Point; 3]) -> bool {
+    let any = |k: usize, compare: fn(&f64, &f64) -> bool| t.iter().any(|q| compare(&q[k], &p[k]));
+    any(0, f64::ge) && [1, 2].iter().all(|&k| any(k, f64::le) && any(k, f64::ge))
 }
 
 /// Side of a line on which the moved point lies: of its infinitesimals, the first that matters decides.
 fn turn(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> i32 {
-    let compare = |x: f64, y: f64| i32::from(x > y) - i32::from(x < y);
     match orient_2d(a, b, p) {
         // The derivative of the area in y is a.z - b.z, in z it is b.y - a.y.
-        0 if a[1] != b[1] => compare(a[1], b[1]),
-        0 => compare(b[0], a[0]),
+        0 if a[1] != b[1] => a[1].total_cmp(&b[1]) as i32,
+        0 => b[0].total_cmp(&a[0]) as i32,
         sign => sign,
     }
 }
@@ -128,10 +129,39 @@ mod tests {
 
     const A: [Point; 3] = [[0., 0., 0.], [2., 0., 0.], [0., 2., 0.]];
 
+    /// Result for a segment, the same for all orders of the triangle's vertices.
+    fn segment(p: [f64; 2], q: [f64; 2]) -> bool {
+        let [a, b, c] = A.map(|p| flat(&p, [0, 1]));
+        let found = meets_in_plane([p, q], [a, b, c]);
+        for t in [[b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]] {
+            assert_eq!([meets_in_plane([p, q], t), meets_in_plane([q, p], t)], [found; 2], "{p:?} {q:?} {t:?}");
+        }
+        found
+    }
+
+    #[test]
+    fn segments_and_a_triangle_in_a_plane() {
+        // Through each side, through a vertex, along a side, and inside.
+        for outside in [[0.5, -1.], [-1., 0.5], [2., 2.], [-1., -1.]] {
+            assert!(segment(outside, [0.5, 0.5]), "{outside:?}");
+        }
+        assert!(segment([-1., 0.], [3., 0.]) && segment([0.5, 0.5], [0.6, 0.5]) && segment([-1., 1.], [1., -1.]));
+        assert!(!segment([-1., 0.9], [0.9, -1.]) && !segment([3., 0.], [4., 0.]) && !segment([-1., -1.], [-1., 3.]));
+    }
+
+    /// Result for two triangles, the same for all orders of their vertices.
     fn pair(other: [Point; 3]) -> bool {
         let points: Vec<Point> = A.into_iter().chain(other).collect();
         let number = |p: &Point| points.iter().position(|q| q == p).expect("a point") as u32;
-        !crossings(&points, &[A, other].map(|t| [0, 1, 2].map(|i| number(&t[i])))).is_empty()
+        let faces = [A, other].map(|t| t.each_ref().map(number));
+        let turned = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]];
+        let found = !crossings(&points, &faces).is_empty();
+        for s in turned(faces[0]) {
+            for t in turned(faces[1]) {
+                assert_eq!([intersect(&points, s, t), intersect(&points, t, s)], [found; 2], "{s:?} {t:?} {other:?}");
+            }
+        }
+        found
     }
 
     #[test]
@@ -158,6 +188,17 @@ mod tests {
         assert!(pair([b, a, [0.3, 0.3, 0.]]));
         assert!(!pair([b, a, [0.3, 0.3, 1e-300]]));
         assert!(pair([c, b, a]));
+    }
+
+    #[test]
+    fn rays_pass_no_triangle_beside_or_behind_their_start() {
+        let moved = |by: Point| [[5., 0., 0.], [5., 2., 0.], [5., 0., 2.]].map(|q| [0, 1, 2].map(|k| q[k] + by[k]));
+        for by in [[0.; 3], [-5., 0., 0.], [0., -2., 0.], [0., 0., -2.], [9., -1., -1.]] {
+            assert!(may_pass(&[0.; 3], &moved(by)), "{by:?}");
+        }
+        for by in [[-6., -1., -1.], [0., 1., 0.], [0., -3., 0.], [0., 0., 1.], [0., 0., -3.]] {
+            assert!(!may_pass(&[0.; 3], &moved(by)), "{by:?}");
+        }
     }
 
     #[test]

@@ -11,6 +11,10 @@ const UNDERFLOW: f64 = 1e-315;
 
 /// Returns the sign of the signed volume of a tetrahedron: positive if `a`, `b`, `c` are counterclockwise seen from `d`.
 pub fn orient_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
+    filter_3d(a, b, c, d).unwrap_or_else(|| exact_3d(a, b, c, d))
+}
+
+fn filter_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> Option<i32> {
     let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
     let (mut det, mut sum, mut largest) = (0.0, 0.0, 0.0_f64);
     for i in 0..3 {
@@ -20,12 +24,13 @@ pub fn orient_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 
         sum += u[i].abs() * (plus.abs() + minus.abs());
         largest = largest.max(u[i].abs()).max(v[i].abs()).max(w[i].abs());
     }
-    let bound = BOUND_3 * sum + UNDERFLOW * (1.0 + largest);
+    clear_sign(det, BOUND_3 * sum + UNDERFLOW * (1.0 + largest), sum)
+}
+
+/// Sign of a sum that exceeds its error bound; `None` if it does not, or if the sum of the absolute terms overflows.
+fn clear_sign(value: f64, bound: f64, sum: f64) -> Option<i32> {
     // A comparison with NaN or infinity is false.
-    if det.abs() > bound && sum < f64::MAX {
-        return if det > 0.0 { 1 } else { -1 };
-    }
-    exact_3d(a, b, c, d)
+    (value.abs() > bound && sum < f64::MAX).then(|| value.signum() as i32)
 }
 
 fn exact_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
@@ -36,13 +41,14 @@ fn exact_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
 
 /// Returns the sign of the signed area of a triangle in the plane: positive if it is counterclockwise.
 pub fn orient_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
+    filter_2d(a, b, c).unwrap_or_else(|| exact_2d(a, b, c))
+}
+
+fn filter_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Option<i32> {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
     let (plus, minus) = (u[0] * v[1], u[1] * v[0]);
-    let (det, sum) = (plus - minus, plus.abs() + minus.abs());
-    if det.abs() > BOUND_2 * sum + UNDERFLOW && sum < f64::MAX {
-        return if det > 0.0 { 1 } else { -1 };
-    }
-    exact_2d(a, b, c)
+    let sum = plus.abs() + minus.abs();
+    clear_sign(plus - minus, BOUND_2 * sum + UNDERFLOW, sum)
 }
 
 fn exact_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
@@ -53,7 +59,11 @@ fn exact_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
 
 /// Returns the sign of the volume enclosed by triangles: positive if they face outwards.
 pub fn volume_sign(triangles: &[[[f64; 3]; 3]]) -> i32 {
-    let Some(origin) = triangles.first().map(|t| t[0]) else { return 0 };
+    filter_volume(triangles).unwrap_or_else(|| exact_volume(triangles))
+}
+
+fn filter_volume(triangles: &[[[f64; 3]; 3]]) -> Option<i32> {
+    let origin = triangles.first()?[0];
     let (mut volume, mut sum) = (0.0, 0.0);
     for t in triangles {
         let [u, v, w] = t.map(|p| [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]);
@@ -63,16 +73,13 @@ pub fn volume_sign(triangles: &[[[f64; 3]; 3]]) -> i32 {
         }
     }
     // Far above the error of any sum of fewer than 2³² products.
-    if volume.abs() > 1e-5 * sum && volume.abs() > 1e-200 && sum < f64::MAX {
-        return if volume > 0.0 { 1 } else { -1 };
-    }
+    clear_sign(volume, (1e-5 * sum).max(1e-200), sum)
+}
+
+fn exact_volume(triangles: &[[[f64; 3]; 3]]) -> i32 {
     let numbers = Scaled::new(triangles.iter().flatten().flatten().copied());
-    let mut exact = BigInt::ZERO;
-    for t in triangles {
-        let [u, v, w] = t.map(|p| p.map(|x| numbers.integer(x)));
-        exact += determinant(&u, &v, &w);
-    }
-    sign(&exact)
+    let exact = triangles.iter().map(|t| t.map(|p| p.map(|x| numbers.integer(x))));
+    sign(&exact.map(|[u, v, w]| determinant(&u, &v, &w)).sum())
 }
 
 /// Common power of two that makes integers of floating-point numbers.
@@ -91,12 +98,12 @@ impl Scaled {
     }
 }
 
-/// Integer and power of two whose product is a finite number.
+/// Integer and power of two whose product is 2¹⁰⁷⁵ times a finite number.
 fn parts(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let (raw, fraction) = (((bits >> 52) & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let mantissa = if raw == 0 { fraction } else { fraction | (1 << 52) };
-    (if x < 0.0 { -mantissa } else { mantissa }, raw.max(1) - 1075)
+    let mantissa = if raw == 0 { fraction } else { fraction + (1 << 52) };
+    (if x.is_sign_negative() { -mantissa } else { mantissa }, raw.max(1))
 }
 
 fn minus(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
@@ -134,6 +141,11 @@ mod tests {
         assert_eq!(orient_3d(&b, &a, &c, &[0.0, 0.0, 1.0]), -1);
     }
 
+    /// Triangles of a tetrahedron.
+    fn sides(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> [[[f64; 3]; 3]; 4] {
+        [[a, c, b], [a, b, d], [b, c, d], [c, a, d]]
+    }
+
     /// Points in a plane, moved by some units in the last place, at all scales.
     #[test]
     fn the_filter_never_differs_from_integers() {
@@ -154,6 +166,8 @@ mod tests {
                 *x = f64::from_bits(x.to_bits().wrapping_add(random(5) * u64::from(x.is_normal())));
             }
             assert_eq!(orient_3d(&a, &b, &c, &d), exact_3d(&a, &b, &c, &d), "{round}: {a:?} {b:?} {c:?} {d:?}");
+            let sides = sides(a, b, c, d);
+            assert_eq!(volume_sign(&sides), exact_volume(&sides), "{round}: {a:?} {b:?} {c:?} {d:?}");
             let e = [0, 1].map(|k| a[k] + u * (b[k] - a[k]));
             let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
             assert_eq!(orient_2d(a, b, e), exact_2d(a, b, e), "{round}: {a:?} {b:?} {e:?}");
@@ -178,6 +192,42 @@ mod tests {
             assert_eq!(orient_3d(&a, &c, &b, &d), -1, "{scale}");
             assert_eq!(orient_2d([0.0, 0.0], [scale, 0.0], [0.0, scale]), 1, "{scale}");
             assert_eq!(orient_2d([0.0, 0.0], [scale, scale], [3.0 * scale, 3.0 * scale]), 0, "{scale}");
+        }
+    }
+
+    /// Clear cases need no integers, which are slow.
+    #[test]
+    fn the_filter_decides_clear_cases() {
+        for (scale, shift) in [(1e-60, 0.0), (1e-3, 0.0), (1.0, 1e7), (1e60, 0.0)] {
+            let p = |x: f64, y: f64, z: f64| [x, y, z].map(|x| x * scale + shift);
+            let (a, b, c, d) = (p(-1., -2., -1.), p(3., 1., 2.), p(1., 2., 1.), p(0., 1., 4.));
+            assert_eq!((filter_3d(&a, &b, &c, &d), filter_3d(&a, &c, &b, &d)), (Some(1), Some(-1)), "{scale}");
+            let flat = |p: [f64; 3]| [p[0], p[2]];
+            assert_eq!(filter_2d(flat(a), flat(b), flat(d)), Some(1), "{scale}");
+            assert_eq!(filter_2d(flat(a), flat(d), flat(b)), Some(-1), "{scale}");
+            assert_eq!(filter_volume(&sides(a, b, c, d)), Some(1), "{scale}");
+            assert_eq!(filter_volume(&sides(a, c, b, d)), Some(-1), "{scale}");
+        }
+        assert_eq!((clear_sign(-2.0, 1.0, 2.0), clear_sign(1.0, 1.0, 2.0)), (Some(-1), None));
+        assert_eq!((clear_sign(2.0, 1.0, f64::MAX), clear_sign(f64::NAN, 1.0, 2.0)), (None, None));
+    }
+
+    /// Products below the smallest number are rounded to multiples of it, here by 3 quarters at most.
+    #[test]
+    fn the_filter_knows_underflow() {
+        let mut state = 11_u64;
+        let mut small = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as i32 % 8 * 2 - 7
+        };
+        let power = |exponent: i32| f64::from_bits(((exponent + 1023) as u64) << 52);
+        for (large, tiny) in [(900, -538), (0, -538), (-40, -518)] {
+            for round in 0..2000 {
+                let mut point = |exponent: i32| [0; 3].map(|_| f64::from(small()) * power(exponent));
+                let (b, c, d) = (point(large), point(tiny), point(tiny));
+                let expected = exact_3d(&[0.0; 3], &b, &c, &d);
+                assert_eq!(orient_3d(&[0.0; 3], &b, &c, &d), expected, "{round}: {b:?} {c:?} {d:?}");
+            }
         }
     }
 

@@ -115,3 +115,19 @@ fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
         labelled_inside,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::is_odd;
+
+    #[test]
+    fn orders_of_vertices_are_odd_or_even() {
+        assert_eq!([[1, 2, 3], [2, 3, 1], [3, 1, 2]].map(is_odd), [false; 3]);
+        assert_eq!([[1, 3, 2], [3, 2, 1], [2, 1, 3]].map(is_odd), [true; 3]);
+        // Equal vertices keep their order.
+        assert_eq!(
+            [[1, 1, 2], [2, 1, 2], [1, 2, 1], [1, 2, 2], [1, 1, 1]].map(is_odd),
+            [false, true, true, false, false]
+        );
+    }
+}

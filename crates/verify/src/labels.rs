@@ -1,5 +1,6 @@
 //! Conditions on labelled triangles, patches and caps.
 
+use crate::boundary::edges;
 use crate::faces::{Boundary, is_odd, key};
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
@@ -172,7 +173,7 @@ impl Shape {
 
     /// Flatness, centre, area and direction of a described cap, whose radius is the unit.
     fn compare(&self) -> [bool; 4] {
-        let has_area = self.unit > 0.0 && (self.area - PI).abs() <= 0.05 * PI;
+        let has_area = self.unit.is_sign_positive() && (self.area - PI).abs() <= 0.05 * PI;
         [self.is_flat(1.0), self.off_centre <= 0.1, has_area, self.faces_along]
     }
 }
@@ -191,37 +192,29 @@ fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Directed edges of triangles with their triangle, sorted by the edge without direction.
-fn edges(triangles: &[[u32; 3]]) -> Vec<([u32; 2], bool, u32)> {
-    let sides = triangles.iter().zip(0..).flat_map(|(t, i)| [0, 1, 2].map(|k| (t[k], t[(k + 1) % 3], i)));
-    let mut edges: Vec<_> = sides.map(|(a, b, i)| ([a.min(b), a.max(b)], a > b, i)).collect();
-    edges.sort_unstable();
-    edges
-}
-
 /// Parts of triangles that are connected by edges.
 fn discs(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
     let mut sets = Sets::new(triangles.len());
-    edges(triangles).windows(2).filter(|pair| pair[0].0 == pair[1].0).for_each(|pair| sets.join(pair[0].2, pair[1].2));
+    let edges = edges(triangles);
+    let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
+    pairs.for_each(|pair| sets.join(pair[0].face, pair[1].face));
     let (part, count) = sets.numbered();
     let mut parts = vec![Vec::new(); count as usize];
     triangles.iter().zip(part).for_each(|(&t, part)| parts[part as usize].push(t));
     parts
 }
 
-/// True if connected triangles form a disc: Euler number 1, and a rim that passes each of its vertices once.
+/// True if triangles that are connected by edges form a disc: an oriented surface with a rim and the Euler number 1.
 fn is_disc(triangles: &[[u32; 3]]) -> bool {
-    let edges = edges(triangles);
-    let (mut count, mut rim, mut is_surface) = (0, Vec::new(), true);
-    for group in edges.chunk_by(|a, b| a.0 == b.0) {
+    let (mut count, mut has_rim, mut is_surface) = (0, false, true);
+    for group in edges(triangles).chunk_by(|a, b| a.ends == b.ends) {
         count += 1;
         match group {
-            [(ends, is_reversed, _)] => rim.push(ends[usize::from(*is_reversed)]),
-            [a, b] => is_surface &= a.1 != b.1,
+            [_] => has_rim = true,
+            [a, b] => is_surface &= a.is_reversed != b.is_reversed,
             _ => is_surface = false,
         }
     }
     let vertices: HashSet<u32> = triangles.iter().flatten().copied().collect();
-    let starts: HashSet<u32> = rim.iter().copied().collect();
-    is_surface && !rim.is_empty() && starts.len() == rim.len() && vertices.len() + triangles.len() == count + 1
+    is_surface && has_rim && vertices.len() + triangles.len() == count + 1
 }

@@ -33,7 +33,7 @@ fn section<'a>(bytes: &'a [u8], name: &str) -> Option<&'a [u8]> {
     let find = |text: String, from: usize| {
         bytes[from..].windows(text.len()).position(|window| window == text.as_bytes()).map(|at| from + at)
     };
-    let start = find(format!("${name}"), 0)? + name.len() + 1;
+    let start = find(format!("${name}"), 0)?;
     let start = start + bytes[start..].iter().position(|&b| b == b'\n')? + 1;
     Some(&bytes[start..find(format!("$End{name}"), start)?])
 }

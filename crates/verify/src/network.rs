@@ -134,3 +134,149 @@ pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, r
     };
     report.add(Condition::WallDistance, vertices.into_iter().filter(|v| !on_caps.contains(v)).filter(is_far));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_near(found: [f64; 2], expected: [f64; 2]) -> bool {
+        found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-12)
+    }
+
+    /// Vessel along a line that is parallel to no axis, and a function of positions along and across it.
+    fn vessel(length: f64, radii: [f64; 2]) -> (Cone, impl Fn(f64, f64) -> [f64; 3]) {
+        let (start, axis, side) = ([1., 2., 3.], [2. / 3., -1. / 3., 2. / 3.], [1. / 3., -2. / 3., -2. / 3.]);
+        let at = move |along: f64, across: f64| [0, 1, 2].map(|k| start[k] + along * axis[k] + across * side[k]);
+        (Cone { ends: [start, at(length, 0.0)], radii }, at)
+    }
+
+    #[test]
+    fn distances_are_from_the_surface_of_all_balls() {
+        let root = 0.75_f64.sqrt();
+        for (length, radii, along, across, expected) in [
+            // A cylinder: beside it, inside, and beyond both ends.
+            (4.0, [2.0, 2.0], 1.0, 5.0, [3.0, 2.0]),
+            (4.0, [2.0, 2.0], 1.0, 0.5, [-1.5, 2.0]),
+            (4.0, [2.0, 2.0], 7.0, 4.0, [3.0, 2.0]),
+            (4.0, [2.0, 2.0], -3.0, 4.0, [3.0, 2.0]),
+            // A taper by half: its side has the normal (1/2, √3/2).
+            (2.0, [1.0, 0.0], 1.0, 1.0, [root + 0.5 - 1.0, 1.0 - 0.5 * (1.0 - 0.5 / root)]),
+            (2.0, [0.0, 1.0], 1.0, 1.0, [root + 0.5 - 1.0, 0.5 * (1.0 + 0.5 / root)]),
+            // Off the side, the ball at an end is nearest.
+            (2.0, [1.0, 0.0], 0.0, 3.0, [2.0, 1.0]),
+            (2.0, [0.0, 1.0], 2.0, 3.0, [2.0, 1.0]),
+            // A ball that contains the other.
+            (1.0, [1.0, 3.0], 0.5, 0.0, [-2.5, 3.0]),
+            (1.0, [3.0, 1.0], 0.5, 0.0, [-2.5, 3.0]),
+            (1.0, [1.0, 2.0], 0.5, 0.0, [-1.5, 2.0]),
+            (1.0, [2.0, 1.0], 0.5, 0.0, [-1.5, 2.0]),
+            // A ball alone.
+            (0.0, [1.5, 1.5], 3.0, 4.0, [3.5, 1.5]),
+        ] {
+            let (cone, at) = vessel(length, radii);
+            let found = cone.distance(&at(along, across));
+            assert!(is_near(found, expected), "{length} {radii:?} {along} {across}: {found:?}, expected {expected:?}");
+        }
+    }
+
+    #[test]
+    fn a_ball_that_touches_the_larger_from_inside_has_no_side() {
+        for radii in [[1., 2.], [2., 1.]] {
+            let cone = Cone { ends: [[0.; 3], [1., 0., 0.]], radii };
+            assert_eq!(cone.distance(&[0.5, 0., 0.]), [-1.5, 2.0], "{radii:?}");
+        }
+    }
+
+    #[test]
+    fn bounds_reach_beyond_the_balls_by_the_tolerance() {
+        let cone = Cone { ends: [[1., 5., 3.], [4., 2., 3.]], radii: [1.0, 2.0] };
+        assert_eq!(cone.bounds(0.5), [[-2., 7.], [-1., 8.], [0., 6.]]);
+    }
+
+    /// Number of points far from the vessels.
+    fn far(mesh: &Mesh, cones: &[Cone], tolerance: f64) -> usize {
+        let mut report = Report::default();
+        let boundary = crate::faces::check(mesh, &mut report).expect("a boundary");
+        check(cones, tolerance, mesh, &boundary, &mut report);
+        report.outcomes.last().map_or(0, |outcome| outcome.count)
+    }
+
+    #[test]
+    fn the_tolerance_is_in_radii_of_the_nearest_vessel() {
+        let ball = |x: f64, radius: f64| Cone { ends: [[x, 0., 0.]; 2], radii: [radius; 2] };
+        let points = vec![[2., 0., 0.], [0., 2., 0.], [0., 0., 2.], [-2., 0., 0.]];
+        let mesh = Mesh { points, tets: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        let mesh = |labels: &[i64]| {
+            let triangles = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]][..labels.len()].to_vec();
+            Mesh { triangles, labels: labels.to_vec(), ..mesh.clone() }
+        };
+        assert_eq!((far(&mesh(&[]), &[ball(0., 1.)], 1.0), far(&mesh(&[]), &[ball(0., 1.)], 0.99)), (0, 4));
+        assert_eq!((far(&mesh(&[]), &[ball(0., 3.)], 0.34), far(&mesh(&[]), &[ball(0., 3.)], 0.33)), (0, 4));
+        // A vessel that is larger and farther away does not count.
+        let both = [ball(2., 0.1), ball(-100., 90.)];
+        assert_eq!((far(&mesh(&[]), &both, 1.01), far(&mesh(&[]), &both, 0.99)), (0, 1));
+        // Vertices of caps are not compared, nor are those of no face.
+        assert_eq!(far(&mesh(&[1, 1, 1, 1]), &[], 1.0), 4);
+        assert_eq!(far(&mesh(&[1]), &[], 1.0), 3);
+        assert_eq!(far(&mesh(&[1, 2]), &[], 1.0), 1);
+    }
+
+    #[test]
+    fn vertices_in_the_plane_of_a_cap_and_near_it_are_on_it() {
+        let points = vec![[5., -7., 2.], [6., -7., 2.], [5., -6., 2.], [5., -7., 3.]];
+        let mut mesh = Mesh { points, tets: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        let mut count = |move_by: [f64; 3]| {
+            let center = [0, 1, 2].map(|k| [5., -7., 2.][k] + move_by[k]);
+            mesh.caps = vec![Cap { patch: 2, node: 0, center, normal: [0., 0., 1.], radius: 3.0 }];
+            far(&mesh, &[], 1.0)
+        };
+        // The limits are 3e-6 along the normal and 3 √2 = 4.243 across it. The last vertex is at height 1.
+        assert_eq!((count([0., 0., 2.9e-6]), count([0., 0., -2.9e-6]), count([0., 0., 3.1e-6])), (1, 1, 4));
+        assert_eq!((count([-3.2, 0., 0.]), count([-3.3, 0., 0.])), (1, 2));
+        assert_eq!((count([0., -3.2, 0.]), count([0., -3.3, 0.])), (1, 2));
+        assert_eq!((count([4.2, 0., 0.]), count([4.3, 0., 0.]), count([9., 0., 0.])), (2, 3, 4));
+    }
+
+    fn cones(name: &str, text: &str) -> Result<Vec<[f64; 4]>, String> {
+        let cones = read(Path::new(name), text.as_bytes()).map_err(|e| e.to_string())?;
+        Ok(cones.iter().map(|cone| [cone.ends[0][0], cone.radii[0], cone.ends[1][0], cone.radii[1]]).collect())
+    }
+
+    #[test]
+    fn rows_of_swc_link_nodes_with_parents() {
+        let text = "# x is the number\n\n  2 3 20 0 0 0.2 1 extra\n1 3 10 0 0 0.1 -1\n3 3 30 0 0 0.3 2\n";
+        assert_eq!(cones("n.swc", text), Ok(vec![[20., 0.2, 10., 0.1], [30., 0.3, 20., 0.2]]));
+        assert_eq!(cones("n.swc", "1 3 10 0 0 0.1 -1\n"), Err("the network has no vessels".into()));
+        assert_eq!(cones("n.swc", "1 3 10 0 0 0.1\n"), Err("bad row '1 3 10 0 0 0.1'".into()));
+        assert_eq!(cones("n.vtk", ""), Err("networks '.vtk' are not supported; use .swc or .vtp".into()));
+    }
+
+    #[test]
+    fn polylines_of_vtp_are_vessels() {
+        let array = |kind: &str, name: &str, text: &str| {
+            format!("<DataArray type='{kind}' Name='{name}' format='ascii'>{text}</DataArray>")
+        };
+        let file = |name: &str, radii: &str, connectivity: &str, offsets: &str| {
+            let (ids, radii) = (array("Float64", "id", "5 6 7 8"), array("Float64", name, radii));
+            let points = array("Float64", "p", "10 0 0 20 0 0 30 0 0 40 0 0");
+            let lines = array("Int32", "connectivity", connectivity) + &array("Int32", "offsets", offsets);
+            format!(
+                "<VTKFile type='PolyData'><PointData>{ids}{radii}</PointData><Points>{points}</Points><Lines>{lines}</Lines>"
+            )
+        };
+        let radii = "1 2 3 4";
+        let expected = vec![[10., 1., 20., 2.], [20., 2., 30., 3.], [10., 1., 40., 4.]];
+        assert_eq!(cones("n.vtp", &file("MaxRadius", radii, "0 1 2 0 3", "3 5")), Ok(expected));
+        for (name, radii, connectivity, offsets, reason) in [
+            ("width", radii, "0 1", "2", "the points have no radii"),
+            ("radius", radii, "0 1", "3", "a line has a bad offset"),
+            ("radius", radii, "0 1", "-1", "a line has a bad offset"),
+            ("radius", radii, "0 4", "2", "a line has a missing point or radius"),
+            ("radius", radii, "0 -1", "2", "a line has a missing point or radius"),
+            ("radius", "1 2 3", "0 3", "2", "a line has a missing point or radius"),
+            ("radius", radii, "0 1", "1 2", "the network has no vessels"),
+        ] {
+            assert_eq!(cones("n.vtp", &file(name, radii, connectivity, offsets)), Err(reason.into()));
+        }
+    }
+}

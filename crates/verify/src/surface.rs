@@ -153,7 +153,7 @@ impl Values<'_> {
         };
         let Some((bytes, rest)) = self.rest.split_at_checked(width) else { return fail("the file ends early") };
         self.rest = rest;
-        let fold = |n: u64, &b: &u8| n << 8 | u64::from(b);
+        let fold = |n: u64, &b: &u8| n * 256 + u64::from(b);
         let is_big = self.format == "binary_big_endian";
         let n = if is_big { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
         Ok(match kind {
@@ -162,5 +162,145 @@ impl Values<'_> {
             kind if kind.starts_with('u') => n as f64,
             _ => (((n << (64 - 8 * width)) as i64) >> (64 - 8 * width)) as f64,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soup_of(name: &str, bytes: impl AsRef<[u8]>) -> Result<Soup, String> {
+        read(Path::new(name), bytes.as_ref()).map_err(|e| e.to_string())
+    }
+
+    /// Two triangles of the points that the files of these tests have.
+    fn two() -> Soup {
+        let [a, b, c, d] = [[1., 2., 3.], [-4., 5., 6.], [7., -8., 9.], [0.5, 0., -1.]];
+        vec![[a, b, c], [d, c, b]]
+    }
+
+    #[test]
+    fn off_files_have_comments() {
+        let text = "OFF # two\n4 2 0 # counts\n\n1 2 3\n-4 5 6\n7 -8 9\n0.5 0 -1 # last\n3 0 1 2\n3 3 2 1\n";
+        assert_eq!(soup_of("s.off", text), Ok(two()));
+        let damaged = |from: &str, to: &str| soup_of("s.off", text.replace(from, to)).expect_err("damaged");
+        assert_eq!(damaged("4 2 0", "four 2 0"), "no numbers of points and faces");
+        let reason = "a face is no triangle of points of the file";
+        assert_eq!(damaged("3 3 2 1", "3 3 2 4"), reason);
+        assert_eq!(damaged("3 3 2 1", "4 3 2 1 0"), reason);
+        assert_eq!(damaged("3 3 2 1", "2 3 2"), reason);
+        assert_eq!(damaged("3 3 2 1", "3 3 2"), "the file ends early or has a word that is not a number");
+        assert_eq!(soup_of("s.obj", text), Err("surfaces '.obj' are not supported; use .off, .stl or .ply".into()));
+    }
+
+    #[test]
+    fn stl_files_have_text_or_bytes() {
+        let soup = two();
+        let vertex = |p: &[f64; 3]| format!("  vertex {} {} {}\n", p[0], p[1], p[2]);
+        let facet = |t: &[[f64; 3]; 3]| format!(" facet\n{}\n endfacet\n", t.iter().map(vertex).collect::<String>());
+        let text = format!("solid s\n{}endsolid\n", soup.iter().map(facet).collect::<String>());
+        assert_eq!(soup_of("s.stl", &text), Ok(two()));
+        let reason = Err("no triangles, or a damaged one".to_owned());
+        assert_eq!(soup_of("s.stl", "solid s\n"), reason);
+        assert_eq!(soup_of("s.stl", text.replace("vertex 0.5 0 -1", "")), reason);
+        assert_eq!(soup_of("s.stl", text.replace("0.5 0 -1", "0.5 0 ?")), reason);
+        let mut bytes = [&[b'x'; 80][..], &2_u32.to_le_bytes()].concat();
+        for t in &soup {
+            let numbers = [[9.0; 3], t[0], t[1], t[2]];
+            bytes.extend(numbers.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes()));
+            bytes.extend([7; 2]);
+        }
+        assert_eq!(soup_of("s.stl", &bytes), Ok(two()));
+        assert_eq!(soup_of("s.stl", &bytes[..bytes.len() - 1]), reason);
+    }
+
+    /// Types of a vertex and of a list of faces, in bytes.
+    fn ply_of(kinds: [&str; 2], format: &str) -> Vec<u8> {
+        let [real, whole] = kinds;
+        let head = format!(
+            "ply\nformat {format} 1.0\ncomment element\nelement nothing 9\nelement vertex 4\nproperty {whole} id\n\
+             property {real} z\nproperty {real} y\nproperty {real} x\nelement face 2\nproperty {whole} id\n\
+             property list {whole} {real} texture\nproperty list {whole} {whole} vertex_index\nend_header\n"
+        );
+        let mut out = head.into_bytes();
+        let mut put = |kind: &str, x: f64| {
+            let width = match kind {
+                "char" | "int8" | "uchar" | "uint8" => 1,
+                "short" | "int16" | "ushort" | "uint16" => 2,
+                _ => 4,
+            };
+            let bytes = match kind {
+                "double" | "float64" => x.to_le_bytes().to_vec(),
+                "float" | "float32" => (x as f32).to_le_bytes().to_vec(),
+                _ => (x as i64).to_le_bytes()[..width].to_vec(),
+            };
+            match format {
+                "ascii" => out.extend(format!("{x}\n").bytes()),
+                "binary_big_endian" => out.extend(bytes.iter().rev()),
+                _ => out.extend(bytes),
+            }
+        };
+        for [x, y, z] in [[1., 2., 3.], [-4., 5., 6.], [7., -8., 9.], [0.5, 0., -1.]] {
+            for (kind, x) in [(whole, 100.), (real, z), (real, y), (real, x)] {
+                put(kind, x);
+            }
+        }
+        for face in [[0., 1., 2.], [3., 2., 1.]] {
+            let [a, b, c] = face.map(|v| (whole, v));
+            for (kind, x) in [(whole, 50.), (whole, 1.), (real, 60.), (whole, 3.), a, b, c] {
+                put(kind, x);
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn ply_files_have_all_types_in_both_orders() {
+        let reals = ["float", "float32", "double", "float64"];
+        let wholes =
+            ["char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16", "int", "int32", "uint", "uint32"];
+        for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+            for kinds in reals.iter().flat_map(|real| wholes.map(|whole| [real, whole])) {
+                assert_eq!(soup_of("s.ply", ply_of(kinds, format)), Ok(two()), "{format} {kinds:?}");
+            }
+        }
+        let file = ply_of(["double", "int"], "binary_little_endian");
+        assert_eq!(soup_of("s.ply", &file[..file.len() - 1]), Err("the file ends early".into()));
+        assert_eq!(soup_of("s.ply", "ply\n"), Err("no end_header".into()));
+        let unknown = "type 'half' is not supported";
+        assert_eq!(soup_of("s.ply", ply_of(["half", "int"], "binary_little_endian")), Err(unknown.into()));
+    }
+
+    /// Signed integers have a sign in binary files, unsigned ones have none.
+    #[test]
+    fn coordinates_of_ply_files_may_be_integers() {
+        for (kind, bytes, expected) in [
+            ("char", &[255][..], -1.0),
+            ("uchar", &[255], 255.0),
+            ("short", &[254, 255], -2.0),
+            ("ushort", &[1, 255], 65281.0),
+            ("int", &[0, 0, 0, 128], -2_147_483_648.0),
+            ("uint", &[0, 0, 0, 128], 2_147_483_648.0),
+        ] {
+            let head = format!(
+                "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty {kind} x\nelement face 1\n\
+                 property list uchar uchar vertex_indices\nend_header\n"
+            );
+            let file = [head.as_bytes(), bytes, &[3, 0, 0, 0]].concat();
+            assert_eq!(soup_of("s.ply", file), Ok(vec![[[expected, 0.0, 0.0]; 3]]), "{kind}");
+        }
+    }
+
+    #[test]
+    fn zeros_of_both_signs_are_the_same_place() {
+        let points = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
+        let mesh = Mesh { points, tets: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        let mut report = Report::default();
+        let boundary = crate::faces::check(&mesh, &mut report).expect("a boundary");
+        let kept = vec![[[-0., 0., 0.], [0., 1., 0.], [1., -0., -0.]]];
+        let outside = vec![[[0., 0., 0.], [0., 1., 0.], [0., 1., 0.]]];
+        check(&[kept, outside].concat(), &mesh, &boundary, &mut report);
+        let outcome = report.outcomes.last().expect("a condition");
+        assert_eq!((outcome.condition, outcome.first.join(" ").as_str()), (Condition::SurfaceKept, "1"));
     }
 }

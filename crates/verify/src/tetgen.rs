@@ -9,8 +9,8 @@ pub fn read(path: &Path) -> Read<Mesh> {
     let (nodes, _) = table(&path.with_extension("node"), 3)?;
     let first = nodes.first().map_or(0, |row| row[0] as i64);
     for (i, row) in nodes.iter().enumerate() {
-        if row[0] as i64 != first + i as i64 || row.len() < 4 {
-            return fail(format!("node {i} of the .node file is out of order or has fewer than 3 coordinates"));
+        if row[0] as i64 != first + i as i64 {
+            return fail(format!("node {i} of the .node file is out of order"));
         }
         mesh.points.push([row[1], row[2], row[3]]);
     }

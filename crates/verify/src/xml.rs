@@ -182,7 +182,7 @@ impl<'a> VtkFile<'a> {
     }
 
     fn word(&self, bytes: &[u8]) -> usize {
-        let fold = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
+        let fold = |n: u64, &byte: &u8| n * 256 + u64::from(byte);
         let n = if self.is_big_endian() { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
         usize::try_from(n).unwrap_or(usize::MAX)
     }
@@ -233,7 +233,7 @@ fn decoded(data: &[u8], length: usize, is_raw: bool) -> Read<Vec<u8>> {
         }
         let (mut bits, mut count) = (0_u32, 0);
         for value in four.iter().map_while(|&c| base64(c)) {
-            bits = bits << 6 | value;
+            bits = bits * 64 + value;
             count += 1;
         }
         if count < 2 {
@@ -299,7 +299,44 @@ mod tests {
         let big = "byte_order='BigEndian' header_type='UInt64'";
         assert_eq!(array(big, "AAAAAAAAAAQAAAAB").expect("readable"), [1]);
         assert!(array("", "CAAAAAEAAAD+").is_err());
+        let damaged = array("", "CAAAA").expect_err("one letter").to_string();
+        assert_eq!(damaged, "array 'a' of Cells: its base64 text is damaged");
+        assert_eq!(
+            array("", "CAAA").expect_err("a cut header").to_string(),
+            "array 'a' of Cells: its base64 text is too short"
+        );
         assert!(array("compressor='vtkLZ4DataCompressor'", "CAAAAAEAAAD+////").is_err());
+    }
+
+    #[test]
+    fn appended_base64_ends_at_its_length() {
+        // 12 bytes are 16 letters without padding; what follows is no base64.
+        let file = "<VTKFile type='x'><Cells><DataArray type='Int32' Name='a' format='appended' offset='0'/></Cells>\n\
+            <AppendedData encoding='base64'>\n _CAAAAAEAAAD+////\n </AppendedData></VTKFile>";
+        assert_eq!(whole(file).expect("readable"), [1, -2]);
+    }
+
+    #[test]
+    fn attributes_have_either_quote_and_spaces() {
+        let found = attributes("DataArray Name = 'a b'\n\ttype=\"Int'32\" n='' open='no");
+        let expected = [("Name", "a b"), ("type", "Int'32"), ("n", "")];
+        assert_eq!(found, expected.map(|(name, value)| (name.to_owned(), value.to_owned())).into());
+        assert!(attributes("DataArray Name=a type='b'").is_empty());
+    }
+
+    #[test]
+    fn arrays_belong_to_the_section_around_them() {
+        let array = |text: &str| format!("<DataArray type='Int32' Name='a' format='ascii'>{text}</DataArray>");
+        let xml =
+            format!("<VTKFile type='x'><Empty/>{}<Cells>{}</Cells>{}</VTKFile>", array("1"), array("2"), array("3"));
+        assert_eq!(whole(&xml).expect("readable"), [2]);
+        let file = VtkFile::parse(xml.as_bytes()).expect("tags");
+        assert_eq!(
+            (file.names("Cells"), file.names("VTKFile"), file.names("Empty")),
+            (vec!["a"], vec!["a"; 2], vec![])
+        );
+        assert!(file.array("Cells", "b").expect("no error").is_none());
+        assert!(file.array("Empty", "").expect("no error").is_none());
     }
 
     #[test]
