@@ -40,6 +40,54 @@ fn a_line_per_mesh() {
     assert_eq!(run(dir, &[]).1, Some(2));
 }
 
+#[test]
+fn bad_arguments_have_a_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path();
+    for (words, reason) in [
+        (&["--colour", "m.vtu"][..], "unknown option --colour"),
+        (&["m.vtu", "--tolerance", "0"], "--tolerance needs a positive number"),
+        (&["m.vtu", "--tolerance", "much"], "--tolerance needs a positive number"),
+        (&["m.vtu", "--tolerance"], "--tolerance needs a value"),
+        (&["a.vtu", "b.vtu", "--certificate", "c.json"], "a certificate belongs to one mesh"),
+        (&["a.vtu", "b.vtu", "--write-certificate", "c.json"], "a certificate belongs to one mesh"),
+        (&["--json"], "no mesh"),
+        (&["--list", "none"], "none: No such file or directory (os error 2)"),
+    ] {
+        assert_eq!(run(dir, words), (format!("error: {reason}; --help lists the options\n"), Some(2)));
+    }
+    let (text, code) = run(dir, &["m.vtu", "--help"]);
+    assert!(text.starts_with("Check tetrahedral meshes, ") && text.ends_with("3 unreadable file\n") && code == Some(0));
+    let version = format!("anastomesh-verify {}\n", env!("CARGO_PKG_VERSION"));
+    for word in ["-V", "--version"] {
+        assert_eq!(run(dir, &[word]), (version.clone(), Some(0)));
+    }
+    assert_eq!(run(dir, &["-h"]), (text, Some(0)));
+}
+
+#[test]
+fn unreadable_files_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path();
+    write(dir, "m.vtu", vtu(&tube()));
+    let none = "No such file or directory (os error 2)";
+    let json = format!("{{\"error\":\"{none}\",\"file\":\"a.vtu\"}}\n");
+    assert_eq!(run(dir, &["--json", "a.vtu"]), (json, Some(3)));
+    write(dir, "list", "\nm.vtu\n\na.vtu\n");
+    let (text, code) = run(dir, &["--list", "list"]);
+    assert_eq!((text.lines().count(), code), (2, Some(3)), "{text}");
+    assert!(text.ends_with(&format!("\na.vtu: unreadable: {none}\n")), "{text}");
+    for words in [&["--key", "none"][..], &["--certificate", "none"]] {
+        let text = format!("m.vtu: unreadable: none: {none}\n");
+        assert_eq!(run(dir, &[&["m.vtu"], words].concat()), (text, Some(3)));
+    }
+    let (text, code) = run(dir, &["m.vtu", "--write-certificate", "none/c.json"]);
+    assert_eq!((text, code), (format!("m.vtu: unreadable: none/c.json: {none}\n"), Some(3)));
+    for option in ["--surface", "--network"] {
+        assert_eq!(run(dir, &["m.vtu", option, "none"]), (format!("error: none: {none}\n"), Some(3)));
+    }
+}
+
 /// Gmsh's formats and TetGen's files of a cube of six tetrahedra.
 #[test]
 fn other_formats() {
@@ -70,7 +118,7 @@ fn other_formats() {
     assert_eq!(run(dir, &["m.ele"]).1, Some(3));
 }
 
-fn msh_2(mesh: &anastomesh_verify::Mesh) -> String {
+pub fn msh_2(mesh: &anastomesh_verify::Mesh) -> String {
     let mut text = format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"wall\"\n$EndPhysicalNames\n$Nodes\n{}\n",
         mesh.points.len()
@@ -88,7 +136,7 @@ fn msh_2(mesh: &anastomesh_verify::Mesh) -> String {
     text + "$EndElements\n"
 }
 
-fn msh_4(mesh: &anastomesh_verify::Mesh, is_binary: bool) -> Vec<u8> {
+pub fn msh_4(mesh: &anastomesh_verify::Mesh, is_binary: bool) -> Vec<u8> {
     let mut out = format!("$MeshFormat\n4.1 {} 8\n$EndMeshFormat\n$Entities\n", u8::from(is_binary)).into_bytes();
     // Letters of the format: i for 32 bits, s for 64 bits, d for coordinates.
     let put = |out: &mut Vec<u8>, letters: &str, numbers: &[f64]| {

@@ -86,6 +86,118 @@ fn caps_are_those_of_the_lumen() {
     assert_eq!(broken(without_lumen), [""; 0]);
 }
 
+/// The channel as the mesh of a network, with both of its ends as terminals.
+fn network(m: &mut Mesh) {
+    // A square of 1 has the area of this disc.
+    let radius = (1.0 / std::f64::consts::PI).sqrt();
+    let cap = |patch, node, z, up| Cap { patch, node, center: [1.5, 1.5, z], normal: [0.0, 0.0, up], radius };
+    m.caps = vec![cap(2, 0, 0.0, -1.0), cap(3, 1, 4.0, 1.0)];
+    m.expected_loops = Some(vec![0]);
+    m.expected_terminals = Some(vec![0, 1]);
+}
+
+#[test]
+fn interfaces_without_a_cap_are_the_wall_of_a_network() {
+    let changed = |change: &dyn Fn(&mut Mesh)| {
+        broken(|m| {
+            network(m);
+            change(m);
+        })
+    };
+    assert_eq!(changed(&|_| ()), [""; 0]);
+    assert_eq!(changed(&|m| m.expected_terminals = Some(vec![0])), ["cap_per_terminal"]);
+    assert_eq!(changed(&|m| m.caps[0].normal[2] = 1.0), ["cap_normal"]);
+    // Only names of interfaces are the wall's.
+    let plaque = |name: &'static str| {
+        move |m: &mut Mesh| {
+            let i = first(m, 4);
+            m.labels[i] = 9;
+            m.patches.push((9, name.into()));
+        }
+    };
+    assert_eq!(changed(&plaque("plaque")), ["wall_or_cap"]);
+    assert_eq!(changed(&plaque("interface_plaque")), [""; 0]);
+    // A terminal may end inside another region: its cap is an interface, and not wall.
+    let inner = |m: &mut Mesh| m.patches[1].1 = "interface_out".into();
+    assert_eq!(changed(&inner), [""; 0]);
+}
+
+#[test]
+fn names_of_interfaces_are_those_of_their_regions() {
+    let named = |name: &'static str| broken(|m| m.patches[2].1 = name.into());
+    assert_eq!(named("interface_wall_lumen"), [""; 0]);
+    // Other regions than these are names without a meaning.
+    assert_eq!(named("interface_lumen_tissue"), [""; 0]);
+    assert_eq!(named("interface_lumenwall"), [""; 0]);
+    assert_eq!(named("interface_lumen_lumen"), ["interfaces"]);
+    assert_eq!(broken(|m| m.regions[0].1 = "lumen_wall".into()), [""; 0]);
+    // Names of regions may contain the separator.
+    let long = |m: &mut Mesh| {
+        m.regions[0].1 = "a_b".into();
+        m.regions[1].1 = "b_c".into();
+        m.patches[2].1 = "interface_a_b_b_c".into();
+    };
+    assert_eq!(broken(long), [""; 0]);
+    let outer = |m: &mut Mesh| {
+        let i = first(m, 5);
+        m.patches.push((9, "interface_wall_lumen".into()));
+        m.labels[i] = 9;
+    };
+    assert_eq!(broken(outer), ["interfaces"]);
+}
+
+#[test]
+fn violations_of_regions_are_named() {
+    let text = |change: &mut dyn FnMut(&mut Mesh)| {
+        let mut mesh = channel();
+        change(&mut mesh);
+        verify(&mesh, &Demands::default()).to_string()
+    };
+    let found = text(&mut |m| m.regions.push((3, "tissue".into())));
+    assert_eq!(
+        found,
+        "NOT valid: regions_named: tetrahedra without a named region, or empty regions: 1 (region tissue is empty)"
+    );
+    let found = text(&mut |m| m.regions.truncate(1));
+    let outside = channel().tet_regions.iter().filter(|&&region| region == 2).count();
+    assert!(found.contains(&format!("regions: {outside} (tetrahedron 0, tetrahedron 1, tetrahedron 2, …)")), "{found}");
+    let mut face = [0; 3];
+    let found = text(&mut |m| {
+        let i = first(m, 4);
+        m.labels.remove(i);
+        face = m.triangles.remove(i);
+    });
+    face.sort_unstable();
+    let [a, b, c] = face;
+    assert!(
+        found.ends_with(&format!(
+            "interfaces: labels that differ from the faces between regions: 1 ({a} {b} {c} without label)"
+        )),
+        "{found}"
+    );
+    // A violation of the whole mesh and of a region is counted for both.
+    let found = text(&mut |m| {
+        m.tets[0].swap(0, 1);
+        m.tets.last_mut().expect("one").swap(0, 1);
+    });
+    let last = channel().tets.len() - 1;
+    assert!(
+        found.contains(&format!("positive_tets: inverted or flat tetrahedra: 4 (0, {last}, region wall: 0, …)")),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_labelled_face_within_a_region_is_no_interface() {
+    let inside = |m: &mut Mesh| {
+        // The diagonal face of the first cell.
+        let [a, _, c, d] = m.tets[0];
+        m.triangles.push([a, c, d]);
+        m.labels.push(4);
+    };
+    assert_eq!(broken(inside), ["interfaces"]);
+}
+
 #[test]
 fn interfaces_are_compared() {
     let interface = first(&channel(), 4);
