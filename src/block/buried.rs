@@ -84,7 +84,10 @@ mod tests {
         let beyond = [false, false, true, false, false, false];
         assert_eq!(own_vessel(&tubes, &beyond, end.section.origin), [1, 3, 4]);
         assert!(!is_buried(&tubes, &beyond, &end));
-        tubes.push(tube([8.0, 6.0, 0.0], [8.0, 20.0, 0.0], 1.0));
+        // A tube beyond another end.
+        tubes.push(tube([0.0, 2.0, 0.0], [0.0, -2.0, 0.0], 3.0));
+        assert!(!is_buried(&tubes, &[false, false, true, false, false, true], &end));
+        tubes[5] = tube([8.0, 6.0, 0.0], [8.0, 20.0, 0.0], 1.0);
         assert_eq!(own_vessel(&tubes, &beyond, end.section.origin), [1, 3]);
         assert!(is_buried(&tubes, &beyond, &end));
     }

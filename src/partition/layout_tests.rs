@@ -1,7 +1,7 @@
 //! Clusters of a layout: sizes of edges, summary figures, clusters that are cut again.
 
 use super::near::terminal_overrun;
-use super::parts::UncutReason;
+use super::parts::{PartitionWarning, UncutReason};
 use super::tests::{h_shape, polyline, skeleton};
 use super::*;
 use anastomesh_mesh::geometry::Point3;
@@ -36,9 +36,11 @@ fn connectors_keep_away_from_places_with_shorter_edges() {
         assert!(explicit.cut_arcs.iter().all(|&[from, to]| to <= lo || hi <= from), "{:?}", explicit.cut_arcs);
     }
     // Every station is in the cluster of its piece.
-    let places: Vec<_> = explicit.clusters.iter().map(|cluster| cluster.fine.len()).collect();
-    assert_eq!(places.iter().sum::<usize>(), stations.len());
-    assert_eq!(places.iter().filter(|count| **count > 0).count(), 1);
+    for piece in explicit.pieces.iter().filter(|piece| piece.branch == BranchId(0)) {
+        let inside = stations.iter().filter(|station| piece.arc[0] <= station.arc && station.arc <= piece.arc[1]);
+        let places: Vec<_> = inside.map(|station| station.place).collect();
+        assert_eq!(explicit.clusters[piece.cluster.0 as usize].fine, places);
+    }
 }
 
 #[test]
@@ -99,15 +101,25 @@ fn clusters_with_a_junction_are_counted() {
 
 #[test]
 fn obstructed_terminals_are_counted_by_kind() {
-    let counts = |distance: f64| {
+    // A tip at this distance from another vessel. All radii are 0.5.
+    let layout = |distance: f64| {
         let points =
             [[0.0; 3], [9.0, 0.0, 0.0], [-9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [6.0, 9.0, 0.0], [6.0, distance, 0.0]];
-        let hook = skeleton(&points.map(|p| (p, 1.0)), &[[0, 1], [0, 2], [0, 3], [3, 4], [4, 5]]);
-        let summary = usual(&hook).summary();
+        let points = points.map(|p| (p.map(|x| 0.5 * x), 0.5));
+        usual(&skeleton(&points, &[[0, 1], [0, 2], [0, 3], [3, 4], [4, 5]]))
+    };
+    let counts = |distance: f64| {
+        let summary = layout(distance).summary();
         (summary.short_overruns, summary.caps_not_clear)
     };
-    // Distances of a tip from another vessel.
     assert_eq!([2.3, 2.5, 3.0, 3.2].map(counts), [(0, 1), (1, 0), (1, 0), (0, 0)]);
+    // Lengths are in radii.
+    for (distance, expected) in [(2.5, 0.459), (3.0, 0.96)] {
+        let [PartitionWarning::ShortOverrun { radii, .. }] = layout(distance).warnings()[..] else {
+            panic!("{distance}")
+        };
+        assert!((radii - expected).abs() < 1e-3, "{radii}");
+    }
 }
 
 #[test]
