@@ -89,7 +89,7 @@ impl Sizes {
     }
 
     /// Bytes of the whole record.
-    fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         self.sections()[7].end
     }
 

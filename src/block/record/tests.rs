@@ -78,3 +78,27 @@ fn records_that_do_not_belong_together_or_contradict_themselves_are_refused() {
     assert!(refused(&|bytes| bytes[40] = 6).is_err());
     assert!(refused(&|bytes| bytes[44] = 5).is_err());
 }
+
+#[test]
+fn records_that_are_cut_off_are_not_opened() {
+    for (points, hollow) in [(12, false), (12, true), (65_537, false)] {
+        let Encoded { connectivity, geometry, .. } = Encoded::of(&block(points, hollow)).expect("encoded");
+        let sizes = Connectivity::open(&connectivity[..]).expect("a record").sizes();
+        assert_eq!(sizes.bytes(), connectivity.len() as u64);
+        for length in [0, 40, connectivity.len() / 2, connectivity.len() - 1] {
+            assert!(Connectivity::open(&connectivity[..length]).is_err(), "{length} of {}", connectivity.len());
+        }
+        assert!(Record::open(&connectivity[..], &geometry[..geometry.len() / 2]).is_err());
+    }
+}
+
+#[test]
+fn triangles_have_no_vertex_beyond_the_last_point() {
+    let mut bytes = Encoded::of(&block(12, true)).expect("encoded").connectivity;
+    // The last number is a vertex of the last triangle.
+    for (vertex, is_sound) in [(11, true), (12, false)] {
+        *bytes.iter_mut().rev().nth(1).expect("a number") = vertex;
+        let record = Connectivity::open(&bytes[..]).expect("a record");
+        assert_eq!(record.triangles(&[3]).is_ok(), is_sound);
+    }
+}
