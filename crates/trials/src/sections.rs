@@ -39,8 +39,8 @@ fn mutation(figures: &[&Value]) -> String {
         "## Mutation\n\n\
          Each mutant is a small change of the sources. The tests should fail with it. The score is the share of mutants with which they \
          fail or\ntake too long. Mutants that do not compile are not counted. A score of a sample has an interval of 95 % confidence.\n\
-         `anastomesh-mutants` tries each mutant with the tests that reach it, without those that run the program. Mutants that cannot be caught, such as\n\
-         those that change only the speed, have a reason in [survivors.txt](../crates/mutants/survivors.txt). They count as missed.\n\n\
+         `anastomesh-mutants` tries each mutant with the tests that reach it, without those that run the program. Mutants that cannot be\n\
+         caught, such as those that change only the speed, have a reason in [survivors.txt](../crates/mutants/survivors.txt). They count as missed.\n\n\
          Command: `.ci/long mutants`, or `PARTS=\"check store\" .ci/long mutants` for some parts\n\n\
          | part | tried | of | caught | timeouts | missed | of these with a reason | unviable | score, % | day |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
