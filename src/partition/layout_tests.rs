@@ -2,11 +2,12 @@
 
 use super::near::terminal_overrun;
 use super::parts::{PartitionWarning, UncutReason};
-use super::tests::{h_shape, polyline, skeleton};
+use super::tests::{any_network, h_shape, polyline, skeleton};
 use super::*;
 use anastomesh_mesh::geometry::Point3;
 use anastomesh_skeleton::course::{Courses, Way};
 use anastomesh_skeleton::{NodeSizes, SizeAt, SizeField};
+use proptest::prelude::*;
 
 fn layout(skeleton: &Skeleton, params: &PartitionParams) -> Layout {
     lay_out(&Arc::new(skeleton.clone()), params, &()).expect("a layout")
@@ -153,4 +154,66 @@ fn tips_continue_their_vessel() {
     assert_eq!((onward.a.x, back.a.x), (9.0, 1.0));
     assert!((onward.b - Point3::new(9.0 + length, 0.0, 0.0)).norm() < 1e-12);
     assert!((back.b - Point3::new(1.0 - length, 0.0, 0.0)).norm() < 1e-12);
+}
+
+/// A cluster without the numbers of its cuts.
+fn without_numbers(layout: &Layout, id: usize) -> Cluster {
+    let mut cluster = layout.cluster(ClusterId(id as u32));
+    for end in &mut cluster.ends {
+        if let EndKind::Cut { cut, .. } = &mut end.kind {
+            *cut = CutId(0);
+        }
+    }
+    cluster
+}
+
+#[test]
+fn layouts_with_other_overruns_or_skeletons_have_nothing_in_common() {
+    let network = Arc::new(h_shape(30.0));
+    let with = |skeleton: &Arc<Skeleton>, overrun| {
+        lay_out(skeleton, &PartitionParams { overrun, ..PartitionParams::default() }, &()).expect("a layout")
+    };
+    let usual = with(&network, 1.0);
+    let count = |other: &Layout| {
+        let same = usual.same_as(other);
+        [same.clusters.iter().flatten().count(), same.cuts.iter().flatten().count()]
+    };
+    assert_eq!(count(&with(&network, 1.0)), [2, 1]);
+    assert_eq!(count(&with(&network, 1.5)), [0, 0]);
+    assert_eq!(count(&with(&Arc::new(h_shape(30.0)), 1.0)), [0, 0]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    /// Clusters and cuts are the same if all that their blocks are made of is equal, and only then.
+    #[test]
+    fn unchanged_clusters_and_cuts_are_found(
+        network in any_network(), shift in -1.0..1.0_f64, moved in any::<u8>(), uncut in any::<u8>(),
+    ) {
+        prop_assume!(network.edge_ids().all(|e| network.length(e) > 1e-6));
+        let network = Arc::new(network);
+        let before = lay_out(&network, &PartitionParams::default(), &()).expect("a layout");
+        let params = PartitionParams {
+            shifted_cuts: [(BranchId(u32::from(moved % 16)), shift)].into(),
+            forbidden_cuts: [BranchId(u32::from(uncut % 32))].into(),
+            cut_terminals: uncut > 250,
+            ..PartitionParams::default()
+        };
+        let after = lay_out(&network, &params, &()).expect("a layout");
+        let same = after.same_as(&before);
+        let old: Vec<Cluster> = (0..before.clusters_len()).map(|j| without_numbers(&before, j)).collect();
+        for (i, found) in same.clusters.iter().enumerate() {
+            let equal = old.iter().position(|cluster| *cluster == without_numbers(&after, i));
+            prop_assert_eq!(found.map(|id| id.0 as usize), equal);
+        }
+        let of = |layout: &Layout, cut: u32| {
+            let Cut { branch, path, size, .. } = layout.cut(CutId(cut));
+            (branch, path, size)
+        };
+        for (i, found) in (0..).zip(&same.cuts) {
+            let equal = (0..before.cuts_len() as u32).find(|&j| of(&before, j) == of(&after, i));
+            prop_assert_eq!(found.map(|id| id.0), equal);
+        }
+    }
 }

@@ -404,7 +404,7 @@ fn flaws_are_found() {
 }
 
 /// Random tree with extra edges that close loops; each edge is a polyline of one to `pieces` pieces.
-fn any_network() -> impl Strategy<Value = Skeleton> {
+pub(super) fn any_network() -> impl Strategy<Value = Skeleton> {
     let node =
         (prop::array::uniform3(-1.0..1.0_f64), 0.3..2.0_f64, any::<u32>(), 1..6_u32, 2.0..40.0_f64, any::<bool>());
     (prop::collection::vec(node, 1..40), prop::collection::vec((any::<u32>(), any::<u32>()), 0..3)).prop_map(
