@@ -78,7 +78,7 @@ fn complex() -> Plc {
 }
 
 /// Families of small surfaces and complexes, by a number.
-fn families() -> [(&'static str, u32, fn(u32) -> Plc); 9] {
+pub(super) fn families() -> [(&'static str, u32, fn(u32) -> Plc); 9] {
     /// Power of ten from 1 to 1e-12.
     fn small(k: u32) -> f64 {
         libm::pow(10.0, -f64::from(k % 13))

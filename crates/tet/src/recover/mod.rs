@@ -369,3 +369,8 @@ impl<'a> Recovery<'a> {
 fn blocked(refusal: Refusal) -> bool {
     matches!(refusal, Refusal::NotValid | Refusal::RingTooLarge)
 }
+
+#[cfg(test)]
+mod recorded;
+#[cfg(test)]
+mod tests;
