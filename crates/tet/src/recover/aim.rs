@@ -97,4 +97,48 @@ mod tests {
         assert!(!Aim::Triangle([0, 1, 3]).allows_edge(&c, [4, 5], [2, 6]));
         assert!(Aim::Triangle([0, 1, 3]).allows_edge(&c, [4, 6], [2, 5]));
     }
+
+    #[test]
+    fn segments_meet_in_any_plane() {
+        // A cross, a segment beyond either end, one beside, and one that only touches.
+        let flat = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [1.0, -1.0],
+            [2.0, 1.0],
+            [5.0, -1.0],
+            [5.0, 2.0],
+            [1.0, 2.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+        ];
+        let planes: [fn([f64; 2]) -> [f64; 3]; 5] = [
+            |[x, y]| [x, y, 0.0],
+            |[x, y]| [0.0, x, y],
+            |[x, y]| [y, 0.0, x],
+            |[x, y]| [x, y, x - y],
+            |[x, y]| [y, x, 2.0],
+        ];
+        for plane in planes {
+            let c = Complex::new(flat.into_iter().map(plane).map(Point3::from).collect());
+            for aim in [[0, 1], [1, 0]] {
+                let met = |[x, y]: [u32; 2]| [[x, y], [y, x]].map(|edge| meet(&c, aim, edge));
+                assert_eq!(met([2, 3]), [true; 2]);
+                for other in [[4, 5], [3, 6], [7, 8], [2, 4], [0, 3], [1, 3]] {
+                    assert_eq!(met(other), [false; 2], "{other:?}");
+                }
+            }
+            assert!(meet(&c, [2, 3], [0, 7]) && !meet(&c, [2, 8], [0, 3]));
+        }
+        let skew = Complex::new(
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, -1.0, 1.0], [2.0, 1.0, 1.0]].map(Point3::from).into(),
+        );
+        assert!(!meet(&skew, [0, 1], [2, 3]));
+    }
+
+    #[test]
+    fn only_edges_are_a_matter_of_a_wanted_triangle() {
+        let c = complex();
+        assert!(Aim::Triangle([0, 1, 3]).allows_face(&c, [4, 5, 6]) && Aim::Any.allows_face(&c, [2, 4, 7]));
+    }
 }

@@ -209,3 +209,125 @@ pub(super) fn pierces(c: &Complex, [p, q]: [u32; 2], tri: [u32; 3]) -> bool {
     let turn: [f64; 3] = std::array::from_fn(|i| orient3d(at(p), at(q), at(tri[i]), at(tri[(i + 1) % 3])));
     turn.iter().all(|&x| x > 0.0) || turn.iter().all(|&x| x < 0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delaunay::delaunay;
+    use anastomesh_mesh::geometry::Point3;
+
+    #[test]
+    fn an_edge_pierces_only_the_interior_of_a_triangle() {
+        let mut points = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+        // Inside, beyond each side, on a side, beside a corner.
+        for [x, y] in [[1.0, 1.0], [1.0, -1.0], [3.0, 3.0], [-1.0, 1.0], [2.0, 0.0], [-1.0, -1.0]] {
+            points.extend([1.0, -1.0, 2.0].map(|z| [x, y, z]));
+        }
+        points.push([1.0, 1.0, 0.0]);
+        let c = Complex::new(points.into_iter().map(Point3::from).collect());
+        for triangle in [[0, 1, 2], [2, 1, 0]] {
+            let pierced: Vec<u32> = (3..21).step_by(3).filter(|&v| pierces(&c, [v, v + 1], triangle)).collect();
+            assert_eq!(pierced, [3]);
+            assert!(pierces(&c, [4, 3], triangle) && pierces(&c, [4, 5], triangle));
+            // From one side, from a corner, and from its plane.
+            assert!(!pierces(&c, [3, 5], triangle) && !pierces(&c, [0, 4], triangle) && !pierces(&c, [3, 1], triangle));
+            assert!(!pierces(&c, [21, 3], triangle) && !pierces(&c, [3, 21], triangle));
+        }
+    }
+
+    /// Crossings of a segment between two points, in order.
+    fn along(c: &Complex, from: [f64; 3], to: [f64; 3]) -> Vec<String> {
+        let at = |p: [f64; 3]| c.points.iter().position(|q| *q == Point3::from(p)).unwrap() as u32;
+        let mut found = Vec::new();
+        crossings(c, &mut Star::default(), &mut EdgeRing::default(), at(from), at(to), &mut found);
+        let place = |x: &Crossing| match *x {
+            Crossing::Face(half) => format!("face {:?}", sorted(c.face(half).to_vec())),
+            Crossing::Edge(t, p, q) => {
+                assert!([p, q].iter().all(|&v| c.slot_of(t, v).is_some()));
+                format!("edge {:?}", sorted(vec![p, q]))
+            }
+            Crossing::Vertex(v) => format!("vertex {v}"),
+            Crossing::Exists => "exists".into(),
+            Crossing::Nothing => "nothing".into(),
+        };
+        found.iter().map(place).collect()
+    }
+
+    fn sorted(mut v: Vec<u32>) -> Vec<u32> {
+        v.sort_unstable();
+        v
+    }
+
+    /// Crossings of a segment between two points of a complex, found by tests of all faces, edges and vertices.
+    fn crossed(c: &Complex, [a, b]: [u32; 2]) -> std::collections::BTreeSet<String> {
+        let mut all = std::collections::BTreeSet::new();
+        let at = |v: u32| &c.points[v as usize];
+        let between = |p: &Point3| {
+            let along = at(b) - at(a);
+            let share = (p - at(a)).dot(&along) / along.norm_squared();
+            share > 1e-9 && share < 1.0 - 1e-9
+        };
+        for t in c.real_tets() {
+            for half in 4 * t..4 * t + 4 {
+                let f = c.face(half);
+                if pierces(c, [a, b], f) {
+                    all.insert(format!("face {:?}", sorted(f.to_vec())));
+                }
+                for [p, q] in [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]] {
+                    let (u, v) = (at(q) - at(p), at(b) - at(a));
+                    let normal = u.cross(&v);
+                    let apart = normal.dot(&(at(a) - at(p)));
+                    if [a, b].contains(&p) || [a, b].contains(&q) || normal.norm() < 1e-9 || apart.abs() > 1e-9 {
+                        continue;
+                    }
+                    let share = (at(a) - at(p)).cross(&v).dot(&normal) / normal.norm_squared();
+                    if share > 1e-9 && share < 1.0 - 1e-9 && between(&(at(p) + u * share)) {
+                        all.insert(format!("edge {:?}", sorted(vec![p, q])));
+                    }
+                }
+                for v in f {
+                    let off = (at(v) - at(a)).cross(&(at(b) - at(a))).norm();
+                    if ![a, b].contains(&v) && off < 1e-9 && between(at(v)) {
+                        all.insert(format!("vertex {v}"));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn all_crossings_of_a_segment_are_listed() {
+        // Grids have crossings of all kinds; the shifted one, mostly faces and edges.
+        let mut kinds = [0; 4];
+        for shift in [0.0, 0.25] {
+            let mut points = Vec::new();
+            for i in 0..27 {
+                let [x, y, z] = [i % 3, i / 3 % 3, i / 9].map(f64::from);
+                points.push(Point3::new(x + shift * y, y + shift * z * z, z));
+            }
+            points.extend(crate::conform::box_corners(&points));
+            let c = delaunay(&points).unwrap();
+            for a in 0..27_u32 {
+                for b in (0..27).filter(|&b| b != a) {
+                    let found = along(&c, points[a as usize].coords.into(), points[b as usize].coords.into());
+                    let expected = crossed(&c, [a, b]);
+                    let first = found[0].split(' ').next().unwrap();
+                    let kind = ["exists", "face", "edge", "vertex"].iter().position(|&x| x == first).unwrap();
+                    kinds[kind] += 1;
+                    if kind == 0 {
+                        assert!(expected.is_empty() && found.len() == 1, "{a} {b}: {found:?} {expected:?}");
+                        continue;
+                    }
+                    // Crossings end at a vertex.
+                    let all: std::collections::BTreeSet<String> = found.iter().cloned().collect();
+                    assert!(all.is_subset(&expected), "{a} {b}: {found:?} {expected:?}");
+                    assert_eq!(all.len(), found.len());
+                    let stops = found.last().is_some_and(|x| x.starts_with("vertex"));
+                    assert!(stops || all == expected, "{a} {b}: {found:?} {expected:?}");
+                }
+            }
+        }
+        assert!(kinds.iter().all(|&n| n > 30), "{kinds:?}");
+    }
+}

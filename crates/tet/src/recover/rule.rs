@@ -56,3 +56,40 @@ pub(super) fn least_height(corners: [&Point3; 4]) -> f64 {
     let largest = faces.iter().map(Vec3::norm_squared).fold(f64::MIN_POSITIVE, f64::max).sqrt();
     a.cross(&b).dot(&c).abs() / largest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(corners: [[f64; 3]; 4]) -> [Point3; 4] {
+        corners.map(Point3::from)
+    }
+
+    #[test]
+    fn the_height_over_the_largest_face_is_the_least() {
+        let p = points([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 1.0]]);
+        for order in [[0, 1, 2, 3], [1, 2, 3, 0], [2, 3, 0, 1], [3, 0, 1, 2], [1, 0, 2, 3], [0, 3, 1, 2]] {
+            let height = least_height(order.map(|i: usize| &p[i]));
+            assert!((height - 1.0).abs() < 1e-15, "{order:?}: {height}");
+        }
+        assert_eq!(least_height([&p[0]; 4]), 0.0);
+    }
+
+    #[test]
+    fn tetrahedra_must_be_positive_and_thick() {
+        let c = Complex::new(points([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 1.0]]).to_vec());
+        let allowed = |rule: Rule| [[0, 1, 2, 3], [1, 0, 2, 3], [0, 1, 2, 2]].map(|v| rule.allows(&c, &v));
+        assert_eq!(allowed(Rule::Positive), [true, false, false]);
+        assert_eq!(allowed(Rule::Thick(0.999)), [true, false, false]);
+        assert_eq!(allowed(Rule::Thick(1.0)), [false; 3]);
+    }
+
+    #[test]
+    fn flatness_is_relative_to_the_largest_coordinate() {
+        let p = [[0.5, -3.0, 2.0], [1.0, 0.0, 2.5]].map(Point3::from);
+        assert_eq!(flat_height(&p), 192.0 * f64::EPSILON);
+        assert_eq!(coarse_height(&p), 12.0 * f64::from(f32::EPSILON));
+        assert_eq!(flat_height_in_single(&p), Some(coarse_height(&p)));
+        assert_eq!(flat_height_in_single(&[Point3::new(0.5, 0.1, 2.0)]), None);
+    }
+}

@@ -76,4 +76,27 @@ mod tests {
         let flat = |height| is_mostly_flat(&folded(height), &[[0, 1]], 1e-10, |_| true);
         assert!(flat(1e-14) && flat(0.0) && !flat(1e-3));
     }
+
+    #[test]
+    fn three_quarters_of_the_edges_must_be_flat() {
+        // Folded pairs of triangles in a row.
+        let row = |flat: u32, steep: u32| {
+            let (mut all, mut edges) = (TriMesh::default(), Vec::new());
+            for k in 0..flat + steep {
+                let part = folded(if k < flat { 1e-14 } else { 1e-3 });
+                let first = all.points.len() as u32;
+                all.points.extend(part.points);
+                all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+                edges.push([first, first + 1]);
+            }
+            (all, edges)
+        };
+        let lies = |flat, steep| {
+            let (surface, edges) = row(flat, steep);
+            [lies_turned(&surface, &edges, 1e-10), lies_in_planes(&surface, &edges, 1e-10)]
+        };
+        assert_eq!([lies(4, 1), lies(3, 1), lies(7, 2)], [[true, false], [false, false], [true, false]]);
+        assert_eq!([lies(2000, 0), lies(2001, 0), lies(1601, 400)], [[true, false], [true, true], [true, true]]);
+        assert_eq!(lies(1500, 501), [false, false]);
+    }
 }

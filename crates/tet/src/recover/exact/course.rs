@@ -120,3 +120,26 @@ impl Course {
         steps * (OnTriangle::ONE >> bits)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn deep_positions_have_short_weights() {
+        let weight = |share: f64, depth: f64| Course::weight(&Deepest { share, depth, tight: [None; 2] });
+        let of = |steps: u128, bits: u32| steps * (OnTriangle::ONE >> bits);
+        assert_eq!(weight(0.5, 1.0), of(512, 10));
+        assert_eq!(weight(0.3, 1e-3), of(4915, 14));
+        assert_eq!(weight(0.3, -1.0), of((0.3 * (1_u64 << 52) as f64).round() as u128, 52));
+        assert_eq!([weight(-0.1, 1.0), weight(1.1, 1.0)], [0, OnTriangle::ONE]);
+    }
+
+    #[test]
+    fn distances_count_from_the_vertex_reached() {
+        let s = Space::of_points([[1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        assert_eq!([0, 1, 2].map(|at| Course::new(&s, at, [0, 1]).from), [0.0, 1.0, 0.25]);
+        let (rises, falls) = (Height { at: 1.0, slope: 2.0, half: None }, Height { at: 6.0, slope: -3.0, half: None });
+        assert_eq!((rises.meets(&falls), falls.meets(&rises)), (1.0, 1.0));
+    }
+}

@@ -249,4 +249,65 @@ mod tests {
             assert!((worst - depth).abs() < 1e-9 && depth > 0.0, "{worst} {depth}");
         }
     }
+
+    /// Corners of a box from the origin to `(2, 2, height)`, and its faces seen from inside.
+    fn hollow(height: f64) -> (Space, Vec<[u32; 3]>) {
+        let at = |k: u32, axis: u32| f64::from(k >> axis & 1);
+        let corners: [[f64; 3]; 8] = std::array::from_fn(|k| {
+            let k = k as u32;
+            [2.0 * at(k, 0), 2.0 * at(k, 1), height * at(k, 2)]
+        });
+        let squares = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+        let faces = squares.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        (Space::of_points(corners), faces)
+    }
+
+    #[test]
+    fn a_new_point_is_as_deep_as_possible() {
+        let (s, faces) = hollow(4.0);
+        let kernel = Kernel::new(&s, Point3::new(0.5, 0.5, 2.0), &faces);
+        let size = (1.5_f64 * 1.5 * 2.0 + 4.0).sqrt();
+        assert!((kernel.size - size).abs() < 1e-14);
+        assert!((kernel.depth(&Vec3::zeros()) - 0.5).abs() < 1e-14);
+        let deepest = 1.0 / size;
+        let p = kernel.place(&s, 0.999 * deepest).unwrap();
+        assert!((p.x - 1.0).abs() < 1e-9 && (p.y - 1.0).abs() < 1e-9, "{p}");
+        assert!((kernel.place(&s, 1.001 * deepest).unwrap_err() - deepest).abs() < 1e-9);
+        let (walls, depth) = kernel.bounds(&s).unwrap();
+        assert!((depth - deepest).abs() < 1e-9);
+        assert_eq!(walls.len(), 4);
+        // Only two corners have no triangles in their planes that do not contain them.
+        assert_eq!(kernel.neighbor(&s, 0.0), Ok(0));
+        assert!((kernel.apex(&s, 3.0 * deepest).unwrap_err() - 2.0 * deepest).abs() < 1e-9);
+        assert!(matches!(Kernel::new(&s, *s.point(3), &faces[2..4]).neighbor(&s, 0.0), Ok(4)));
+    }
+
+    #[test]
+    fn the_tallest_point_keeps_some_of_the_depth() {
+        let (s, faces) = hollow(4.0);
+        let kernel = Kernel::new(&s, Point3::new(0.5, 0.5, 2.0), &faces);
+        let top = |least: f64| kernel.tallest(&s, &Vec3::z(), least / kernel.size).map(|p| p.z);
+        assert!((top(0.0).unwrap() - 3.9).abs() < 1e-9);
+        assert!((top(0.5).unwrap() - 3.5).abs() < 1e-9);
+        assert_eq!(top(1.001), None);
+        let low = kernel.tallest(&s, &-Vec3::z(), 0.0).unwrap();
+        assert!((low.z - 0.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_corner_with_most_clearance_is_the_apex() {
+        // A pyramid over a square, and its base.
+        let s = Space::of_points([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 3.0, 0.0], [0.0, 3.0, 0.0], [1.5, 1.5, 4.0]]);
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
+        let kernel = Kernel::new(&s, Point3::new(1.0, 1.0, 0.0), &faces);
+        let size = 16.5_f64.sqrt();
+        assert_eq!(kernel.neighbor(&s, 0.0), Ok(4));
+        assert_eq!(kernel.neighbor(&s, 3.999 / size), Ok(4));
+        assert!((kernel.neighbor(&s, 4.001 / size).unwrap_err() - 4.0 / size).abs() < 1e-9);
+        assert!(matches!(kernel.apex(&s, 0.1), Ok(Apex::Vertex(4))));
+        // Two corners that see all, the deeper one first.
+        let faces = [[0, 1, 4]];
+        let kernel = Kernel::new(&s, *s.point(2), &faces);
+        assert!(kernel.neighbor(&s, 0.0).is_ok_and(|w| w == 0));
+    }
 }

@@ -77,3 +77,39 @@ impl Looks {
         &mut self.known[v]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_that_failed_is_repeated_after_a_change_or_for_less() {
+        let (mut looks, way) = (Looks::default(), PlacementMethod::Points);
+        assert!(looks.worth(5, 0.1, way));
+        looks.found(5, 0.01, way);
+        assert!(!looks.worth(5, 0.1, way) && looks.worth(5, 0.01, way) && looks.worth(5, 0.001, way));
+        assert!(looks.worth(5, 0.1, PlacementMethod::Wider) && looks.worth(4, 0.1, way));
+        looks.change([4, 6].into_iter());
+        assert!(!looks.worth(5, 0.1, way));
+        looks.change([5].into_iter());
+        assert!(looks.worth(5, 0.1, way));
+        looks.found(5, 0.01, way);
+        assert!(!looks.worth(5, 0.1, way));
+        looks.forget();
+        assert!(looks.worth(5, 0.1, way));
+        looks.found(5, 0.01, way);
+        assert!(!looks.worth(5, 0.1, way));
+    }
+
+    #[test]
+    fn a_vertex_moves_once_for_each_change() {
+        let mut looks = Looks::default();
+        assert_eq!([looks.worth_relaxing(3), looks.worth_relaxing(3)], [true, false]);
+        looks.change([3].into_iter());
+        assert_eq!([looks.worth_relaxing(3), looks.worth_relaxing(3)], [true, false]);
+        looks.change([2].into_iter());
+        assert!(!looks.worth_relaxing(3));
+        looks.forget();
+        assert_eq!([looks.worth_relaxing(3), looks.worth_relaxing(3)], [true, false]);
+    }
+}

@@ -100,3 +100,43 @@ pub(super) fn recover_part(
     let lost = part.triangles.iter().map(|&t| push.triangles[t as usize]).find(|&t| push.s.find_face(t).is_none());
     lost.map_or(Ok(()), |t| Err(TetError::Stuck { part: Obstacle::Triangle(t), reason: Stuck::Precision }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anastomesh_mesh::geometry::Point3;
+
+    #[test]
+    fn errors_of_helpers_name_the_edge_that_they_help() {
+        let surface = TriMesh { points: vec![Point3::origin(); 5], triangles: vec![[2, 0, 1]] };
+        let part = Part { edges: vec![[3, 4], [0, 4]], triangles: Vec::new() };
+        let about = |error: &TetError, part: &Part| about_input(error.clone(), &surface, part);
+        let stuck = |part, reason| TetError::Stuck { part, reason };
+        let dangling = stuck(Obstacle::Edge([3, 4]), Stuck::Dangling);
+        let meets = |edge, obstacle| TetError::EdgeMeets { edge, obstacle };
+        let of_input = [
+            stuck(Obstacle::Edge([0, 4]), Stuck::Precision),
+            stuck(Obstacle::Triangle([0, 1, 4]), Stuck::Precision),
+            stuck(Obstacle::Point(4), Stuck::Budget),
+            meets([0, 1], Obstacle::Point(2)),
+            TetError::Cancelled,
+        ];
+        for error in of_input {
+            assert_eq!(about(&error, &part), error);
+        }
+        let of_helpers = [
+            stuck(Obstacle::Edge([0, 5]), Stuck::Precision),
+            stuck(Obstacle::Triangle([0, 1, 5]), Stuck::Precision),
+            stuck(Obstacle::Point(5), Stuck::Budget),
+            meets([0, 5], Obstacle::Point(2)),
+            meets([0, 1], Obstacle::Edge([2, 5])),
+        ];
+        for error in of_helpers {
+            assert_eq!(about(&error, &part), dangling);
+            assert_eq!(about(&error, &Part::default()), error);
+        }
+        // Triangles are named as in the input.
+        let met = about(&meets([3, 4], Obstacle::Triangle([0, 1, 2])), &part);
+        assert_eq!(met, meets([3, 4], Obstacle::Triangle([2, 0, 1])));
+    }
+}

@@ -62,3 +62,37 @@ impl Patch {
         self.normal.norm()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of a plane at height 1, and one off it.
+    fn space() -> Space {
+        Space::of_points([[1.0, 2.0, 1.0], [5.0, 2.0, 1.0], [1.0, 5.0, 1.0], [5.0, 11.0, 1.0], [1.0, 2.0, 9.0]])
+    }
+
+    #[test]
+    fn the_plane_of_a_triangle_goes_through_its_center() {
+        let s = space();
+        for triangle in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+            let patch = Patch::new(&s, triangle);
+            let plane = patch.plane();
+            assert_eq!(patch.area(), 12.0);
+            assert!((plane.above - Point3::new(7.0 / 3.0, 3.0, 6.0)).norm() < 1e-14, "{}", plane.above);
+            assert_eq!([3.0, 1.0, -2.0].map(|z| plane.height(&Point3::new(40.0, -7.0, z))), [2.0, 0.0, -3.0]);
+        }
+    }
+
+    #[test]
+    fn triangles_count_by_their_area() {
+        let s = space();
+        let patch = Patch::new(&s, [0, 1, 2]).with(&s, [1, 3, 2]);
+        assert_eq!(patch.area(), 48.0);
+        let center = Point3::new(1.0 + 7.0 / 3.0, 2.0 + 3.25, 6.0);
+        assert!((patch.plane().above - center).norm() < 1e-14, "{}", patch.plane().above);
+        // Two triangles at a right angle span a plane between theirs.
+        let bent = Patch::new(&s, [0, 1, 2]).with(&s, [0, 4, 1]);
+        assert_eq!(bent.area(), (12.0_f64 * 12.0 + 32.0 * 32.0).sqrt());
+    }
+}

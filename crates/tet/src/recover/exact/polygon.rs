@@ -137,3 +137,70 @@ fn shape(s: &Space, corners: [u32; 3]) -> f64 {
     let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
     (q - p).cross(&(r - p)).norm() / longest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_point_above_is_as_far_as_the_longer_side() {
+        let s = Space::of_points([[1.0, 1.0, 0.0], [4.0, 1.0, 0.0], [1.0, 5.0, 0.0], [7.0, 1.0, 0.0]]);
+        let above = |t: [u32; 3]| point_above(&s, t).unwrap();
+        assert_eq!(above([0, 1, 2]), Point3::new(1.0, 1.0, 4.0));
+        assert_eq!(above([0, 2, 1]), Point3::new(1.0, 1.0, -4.0));
+        assert_eq!(above([1, 2, 0]), Point3::new(4.0, 1.0, 5.0));
+        let line = TetError::Stuck { part: Obstacle::Triangle([0, 1, 3]), reason: Stuck::Precision };
+        assert_eq!(point_above(&s, [0, 1, 3]), Err(line));
+    }
+
+    /// Triangles of a polygon of points in the plane, seen from above.
+    fn cut<const N: usize>(points: [[f64; 2]; N]) -> Option<Vec<[u32; 3]>> {
+        let s = Space::of_points(points.map(|[x, y]| [x, y, 0.0]));
+        let (polygon, mut out) = ((0..N as u32).collect::<Vec<_>>(), vec![[9; 3]]);
+        triangulate(&s, &polygon, &Point3::new(0.5, 0.5, 3.0), &mut out).then_some(out)
+    }
+
+    /// Triangles that begin with their smallest vertex.
+    fn rotated(triangles: Option<Vec<[u32; 3]>>) -> Vec<[u32; 3]> {
+        let smallest = |t: [u32; 3]| (0..3).min_by_key(|&i| t[i]).unwrap();
+        let rotate = |t: [u32; 3]| [0, 1, 2].map(|i| t[(smallest(t) + i) % 3]);
+        let mut all: Vec<[u32; 3]> = triangles.unwrap().into_iter().map(rotate).collect();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn the_best_ears_are_cut_first() {
+        let kite = cut([[0.0, 0.0], [1.0, -1.0], [4.0, 0.0], [1.0, 1.0]]);
+        assert_eq!(kite, Some(vec![[1, 2, 3], [3, 0, 1]]));
+        assert_eq!(cut([[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]), Some(vec![[2, 0, 1]]));
+    }
+
+    #[test]
+    fn ears_contain_no_other_corner() {
+        // The two sharp corners of an arrow are its only ears.
+        let arrow = cut([[0.0, 0.0], [4.0, -1.0], [0.2, 0.1], [1.0, 4.0]]);
+        assert_eq!(rotated(arrow), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn flat_corners_are_no_ears() {
+        let flat = cut([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 2.0]]);
+        assert_eq!(rotated(flat), [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(cut([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), None);
+    }
+
+    #[test]
+    fn polygons_that_are_not_simple_are_refused() {
+        assert_eq!(cut([[0.0, 0.0], [2.0, 0.0]]), None);
+        assert_eq!(cut([[0.0, 0.0], [0.0, 2.0], [2.0, 0.0]]), None);
+        assert_eq!(cut([[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]]), None);
+        assert_eq!(cut([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]), None);
+    }
+
+    #[test]
+    fn shape_is_the_area_over_the_squared_longest_side() {
+        let s = Space::of_points([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]]);
+        assert_eq!([[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]].map(|t| shape(&s, t)), [12.0 / 25.0; 4]);
+    }
+}

@@ -189,3 +189,19 @@ fn out_of_budget(part: &Part, triangles: &[[u32; 3]]) -> TetError {
     let part = part.edges.first().map(|&edge| Obstacle::Edge(edge)).or(triangle).unwrap_or(Obstacle::Point(0));
     TetError::Stuck { part, reason: Stuck::Budget }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_over_its_budget_is_named_by_its_first_edge() {
+        let of = |edges: &[[u32; 2]], triangles: &[u32]| {
+            let part = Part { edges: edges.to_vec(), triangles: triangles.to_vec() };
+            out_of_budget(&part, &[[0, 1, 2], [2, 1, 3]])
+        };
+        let stuck = |part| TetError::Stuck { part, reason: Stuck::Budget };
+        assert_eq!(of(&[[4, 5], [1, 2]], &[1]), stuck(Obstacle::Edge([4, 5])));
+        assert_eq!(of(&[], &[1, 0]), stuck(Obstacle::Triangle([2, 1, 3])));
+    }
+}

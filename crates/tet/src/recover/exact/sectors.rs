@@ -157,3 +157,33 @@ pub(super) fn refill(
 fn same_turn(f: [u32; 3], g: [u32; 3]) -> bool {
     f == g || f == [g[1], g[2], g[0]] || f == [g[2], g[0], g[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_is_one_chain_or_one_cycle() {
+        let of = |next: &[(u32, u32)], ends| outline(&next.iter().copied().collect(), ends);
+        assert_eq!(of(&[(3, 1), (1, 2), (2, 3)], None), Some(vec![1, 2, 3]));
+        for ends in [[1, 4], [4, 1]] {
+            assert_eq!(of(&[(1, 2), (2, 3), (3, 4)], Some(ends)), Some(vec![1, 2, 3, 4]));
+        }
+        assert_eq!(of(&[(1, 2), (2, 3)], Some([1, 3])), Some(vec![1, 2, 3]));
+        // Too short, broken, divided, endless.
+        assert_eq!(of(&[(1, 2)], Some([1, 2])), None);
+        assert_eq!(of(&[(1, 2), (2, 1)], None), None);
+        assert_eq!(of(&[(1, 2), (2, 5), (3, 1)], None), None);
+        assert_eq!(of(&[(1, 2), (2, 3), (3, 1), (4, 5)], None), None);
+        assert_eq!(of(&[(1, 2), (2, 3), (4, 5)], Some([1, 3])), None);
+        assert_eq!(of(&[(1, 2), (2, 3), (3, 2)], None), None);
+        assert_eq!(of(&[], None), None);
+    }
+
+    #[test]
+    fn rotations_of_a_face_keep_its_orientation() {
+        let same = |f: [u32; 3]| same_turn(f, [1, 2, 3]);
+        assert_eq!([[1, 2, 3], [2, 3, 1], [3, 1, 2]].map(same), [true; 3]);
+        assert_eq!([[1, 3, 2], [3, 2, 1], [2, 1, 3]].map(same), [false; 3]);
+    }
+}

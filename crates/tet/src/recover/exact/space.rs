@@ -251,6 +251,12 @@ impl Space {
         implicit::compare(self.site(v), self.site(w))
     }
 
+    /// Points without tetrahedra. For tests.
+    #[cfg(test)]
+    pub(super) fn of_points<const N: usize>(points: [[f64; 3]; N]) -> Self {
+        Self::new(Complex::new(points.map(Point3::from).to_vec()), 0.0)
+    }
+
     /// Asserts that all tetrahedra are positive, with exact implicit points. For tests.
     #[cfg(test)]
     pub(super) fn check(&self) {

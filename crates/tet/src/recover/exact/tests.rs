@@ -134,6 +134,43 @@ fn an_attempt_that_recovered_nothing_is_not_repeated() {
 }
 
 #[test]
+fn a_recovery_in_planes_that_took_too_long_is_repeated_with_more_or_for_fewer_parts() {
+    let surface = twisted_prism(5, 0.3, 1.0);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let start = |missing: Missing, last: Option<TooLong>| {
+        let c = delaunay(&surface.points).unwrap();
+        ExactRecovery::new(c, (&surface, &edges), missing, 0.0).after(last)
+    };
+    let too_long = |edges: &[[u32; 2]], triangles: &[u32], last| {
+        let recovery = start(Missing { edges, triangles }, last);
+        assert_eq!(recovery.missing(), edges.len() + triangles.len());
+        [3, 4, 5].map(|share| recovery.is_too_long(share))
+    };
+    let last = Some(TooLong { share: 4, missing: 8 });
+    assert_eq!(too_long(&[[0, 6]; 3], &[0, 1], last), [true, true, false]);
+    assert_eq!(too_long(&[[0, 6]; 3], &[0], last), [false; 3]);
+    assert_eq!(too_long(&[[0, 6]; 3], &[0, 1], None), [false; 3]);
+}
+
+#[test]
+fn strategies_that_differ_in_edges_alone_fail_alike_without_edges() {
+    let surface = twisted_prism(5, 0.3, 1.0);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let [first, second, ..] = RecoveryStrategy::GIVEN;
+    let futile = |edges_missing: &[[u32; 2]]| {
+        let missing = Missing { edges: edges_missing, triangles: &[0] };
+        let c = delaunay(&surface.points).unwrap();
+        let mut recovery = ExactRecovery::new(c, (&surface, &edges), missing, 0.0);
+        assert!(!recovery.is_futile(first, 1));
+        recovery.futile = vec![(first, 2)];
+        [(first, 1), (first, 2), (first, 3), (second, 1), (second, 3)]
+            .map(|(way, share)| recovery.is_futile(way, share))
+    };
+    assert_eq!(futile(&[[0, 6]]), [true, true, false, false, false]);
+    assert_eq!(futile(&[]), [true, true, false, true, false]);
+}
+
+#[test]
 fn wider_cavities_fill_as_well() {
     push::WIDER_FIRST.set(true);
     fills_all(&twisted_prism(5, 0.3, 1.0));

@@ -76,3 +76,21 @@ impl RecoveryStrategy {
         self.vertices.0 * edges + self.vertices.1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budgets_of_vertices_grow_with_the_missing_edges() {
+        assert_eq!(RecoveryStrategy::seen(0).budget(3), 1_000_768);
+        assert_eq!(RecoveryStrategy::deep(true, 0).budget(3), 100_192);
+    }
+
+    #[test]
+    fn operations_are_counted_once() {
+        let s = Space::of_points([]);
+        s.count(7);
+        assert_eq!([operations(&s), operations(&s)], [57, 50]);
+    }
+}
