@@ -77,8 +77,11 @@ fn complex() -> Plc {
     plc
 }
 
-/// Families of small surfaces and complexes, by a number.
-pub(super) fn families() -> [(&'static str, u32, fn(u32) -> Plc); 9] {
+/// Name and size of a family, and its members by a number.
+pub(super) type Family = (&'static str, u32, fn(u32) -> Plc);
+
+/// Families of small surfaces and complexes.
+pub(super) fn families() -> [Family; 9] {
     /// Power of ten from 1 to 1e-12.
     fn small(k: u32) -> f64 {
         libm::pow(10.0, -f64::from(k % 13))

@@ -113,3 +113,29 @@ fn sees(c: &Complex, f: &[u32; 3], p: &Point3) -> bool {
     let [a, b, d] = f.map(|v| &c.points[v as usize]);
     orient3d(a, b, d, p) < 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_tetrahedra_with_the_point_strictly_in_their_sphere_are_removed() {
+        // A corner of a cube, and a tetrahedron beyond that contains the opposite corner.
+        let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0], [3.0, 3.0, 3.0]];
+        let tets = [[0, 1, 2, 3], [1, 2, 3, 4]];
+        let points = corners.map(Point3::from).to_vec();
+        let c = Complex::new(points.clone());
+        let positive = tets.map(|v| if c.orient(&v) > 0.0 { v } else { [v[1], v[0], v[2], v[3]] });
+        let mut made = Vec::new();
+        for at in [1.99, 2.0, 2.01] {
+            let mut c = Complex::from_mesh(points.clone(), &positive).unwrap();
+            let second = c.real_tets().find(|&t| c.slot_of(t, 4).is_some()).unwrap();
+            let edges = SurfaceEdges::default();
+            let v = Cavity::default().insert(&mut c, &edges, &[second], Point3::new(at, at, at));
+            c.sanity_check().unwrap();
+            assert_eq!(v, Some(5));
+            made.push(c.real_tets().count());
+        }
+        assert_eq!(made, [6, 5, 5]);
+    }
+}

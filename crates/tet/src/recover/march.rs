@@ -330,4 +330,19 @@ mod tests {
         }
         assert!(kinds.iter().all(|&n| n > 30), "{kinds:?}");
     }
+
+    #[test]
+    fn an_edge_that_pierces_a_triangle_crosses_its_plane() {
+        let points: Vec<Point3> = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(f64::from)).map(Point3::from).collect();
+        let c = delaunay(&points).unwrap();
+        let (mut star, mut ring, mut found) = (Star::default(), EdgeRing::default(), 0);
+        let at = |v: u32| &c.points[v as usize];
+        for [a, b, d] in (0..27 * 27 * 27_u32).map(|k| [k % 27, k / 27 % 27, k / 729]) {
+            let Some((t, u, v)) = piercing_edge(&c, &mut star, &mut ring, [a, b, d]) else { continue };
+            found += 1;
+            assert!([a, b, u, v].iter().all(|&x| c.slot_of(t, x).is_some()));
+            assert!(orient3d(at(a), at(b), at(u), at(d)) > 0.0 && orient3d(at(a), at(b), at(d), at(v)) > 0.0);
+        }
+        assert!(found > 100, "{found}");
+    }
 }

@@ -301,7 +301,7 @@ impl<'a> Recovery<'a> {
                 continue;
             }
             at = 0;
-            if self.depth == 0 || !way.iter().any(|&crossing| self.clear(crossing, self.depth)) {
+            if !way.iter().any(|&crossing| self.clear(crossing, self.depth)) {
                 break false;
             }
             std::mem::swap(&mut from, &mut to);
@@ -353,7 +353,7 @@ impl<'a> Recovery<'a> {
             self.journal.clear();
             self.failed.clear();
             let found = piercers.iter().any(|&(t, p, q)| self.clear_edge(t, p, q, 0))
-                || (self.depth > 0 && piercers.iter().any(|&(t, p, q)| self.clear_edge(t, p, q, self.depth)));
+                || piercers.iter().any(|&(t, p, q)| self.clear_edge(t, p, q, self.depth));
             if !found {
                 break false;
             }

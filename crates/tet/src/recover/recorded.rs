@@ -8,7 +8,8 @@ use crate::conform;
 use crate::delaunay::{delaunay, hash};
 use crate::input::validate;
 use crate::plc::{InputKind, Plc};
-use crate::recorded::families;
+use crate::recorded::{Family, families};
+use crate::turned_tests::{Rng, plate, turned};
 use anastomesh_mesh::budget::Budget;
 use std::fmt::Write;
 
@@ -136,7 +137,7 @@ const CAVITIES: [(&str, Step); 2] = [
 const PLANES: [(&str, Step); 3] = [
     ("planes", |case, sums| exact(case, RecoveryStrategy::PLANES, flat(case), sums)),
     ("turned", |case, sums| {
-        exact(case, [RecoveryStrategy::TURNED[1], RecoveryStrategy::TURNED[2]], coarse(case), sums)
+        exact(case, [RecoveryStrategy::TURNED[1], RecoveryStrategy::TURNED[2]], coarse(case), sums);
     }),
     ("last", |case, sums| exact(case, [RecoveryStrategy::LAST[1], RecoveryStrategy::LAST[2]], flat(case), sums)),
 ];
@@ -151,10 +152,18 @@ fn tried(name: &str, count: u32) -> u32 {
     }
 }
 
+/// Plates with many missing edges in planes: exact ones first, then turned ones.
+fn large_plates(k: u32) -> Plc {
+    let mut rng = Rng(7);
+    let plate = plate(240 - 60 * k, 0.2, &mut rng);
+    Plc::from(&if k == 0 { plate } else { turned(plate, &mut rng) })
+}
+
 /// Text on the results of steps for each family.
 fn results<const N: usize>(steps: [(&str, Step); N]) -> String {
     let mut all = String::new();
-    for (name, count, make) in families() {
+    let large: Family = ("large plates", 3, large_plates);
+    for (name, count, make) in families().into_iter().chain([large]) {
         let mut sums = steps.map(|_| Sums::default());
         for k in 0..tried(name, count) {
             let case = Case::new(make(k));

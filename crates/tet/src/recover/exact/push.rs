@@ -198,18 +198,17 @@ impl<'a> Push<'a> {
         Mark { space: self.s.record(), triangles: self.triangles.len(), free: self.free.clone() }
     }
 
-    /// Keeps the recorded changes. Returns their number.
-    pub(super) fn keep(&mut self) -> usize {
-        self.s.keep()
+    /// Keeps the recorded changes.
+    pub(super) fn keep(&mut self) {
+        self.s.keep();
     }
 
-    /// Takes back the recorded changes. Returns their number.
-    pub(super) fn undo(&mut self, mark: Mark) -> usize {
-        let changes = self.s.undo(&mark.space);
+    /// Takes back the recorded changes.
+    pub(super) fn undo(&mut self, mark: Mark) {
+        self.s.undo(&mark.space);
         self.triangles.truncate(mark.triangles);
         self.free = mark.free;
         self.forget_part();
-        changes
     }
 
     /// Pushes off all vertices that have clearance, level by level.

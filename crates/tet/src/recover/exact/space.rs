@@ -71,19 +71,19 @@ impl Space {
         Mark { points: self.place.len(), implicit: self.on.len() }
     }
 
-    /// Keeps the recorded changes. Returns their number.
-    pub(super) fn keep(&mut self) -> usize {
-        self.c.keep_changes()
+    /// Keeps the recorded changes.
+    pub(super) fn keep(&mut self) {
+        self.c.keep_changes();
     }
 
-    /// Takes back the recorded changes. Returns their number.
-    pub(super) fn undo(&mut self, mark: &Mark) -> usize {
+    /// Takes back the recorded changes.
+    pub(super) fn undo(&mut self, mark: &Mark) {
         for (place, on) in self.moved.drain(..).rev() {
             self.on[place] = on;
         }
         self.on.truncate(mark.implicit);
         self.place.truncate(mark.points);
-        self.c.undo_changes()
+        self.c.undo_changes();
     }
 
     /// Tetrahedra at a vertex.

@@ -1,7 +1,7 @@
 use super::shapes::{chazelle, dangling, fan, scatter, sheet, twisted_prism};
 use super::*;
 use crate::delaunay::delaunay;
-use crate::error::Obstacle;
+use crate::error::{Obstacle, Stuck};
 use crate::input::validate;
 use crate::plc::InputKind;
 use crate::recover::flat_height;
@@ -168,6 +168,36 @@ fn strategies_that_differ_in_edges_alone_fail_alike_without_edges() {
     };
     assert_eq!(futile(&[[0, 6]]), [true, true, false, false, false]);
     assert_eq!(futile(&[]), [true, true, false, true, false]);
+}
+
+/// Missing parts of prisms in a row, and the error if no part may take any operation.
+fn starved(count: u32) -> (usize, Vec<[u32; 2]>, TetError) {
+    let surface = row(&twisted_prism(3, -0.5, 1.0), count);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    let mut c = delaunay(&points).unwrap();
+    let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let parts = parts::parts(&surface.triangles, missing);
+    let mut recovery = ExactRecovery::new(c, (&surface, &edges), missing, 0.0);
+    let error = recovery.attempt(RecoveryStrategy::GIVEN[0], 0, &Watch::NOBODY).unwrap_err();
+    assert_eq!(recovery.missing(), lost_edges.len() + lost_triangles.len());
+    (parts.len(), parts.iter().map(|part| part.edges[0]).collect(), error)
+}
+
+#[test]
+fn a_strategy_ends_once_many_parts_wait() {
+    let (parts, edges, error) = starved(40);
+    assert!(parts > 60);
+    assert_eq!(error, TetError::Stuck { part: Obstacle::Edge(edges[16 + parts / 2]), reason: Stuck::Budget });
+}
+
+#[test]
+fn a_strategy_ends_after_some_rounds() {
+    let (parts, edges, error) = starved(4);
+    assert!((4..32).contains(&parts));
+    assert_eq!(error, TetError::Stuck { part: Obstacle::Edge(edges[parts - 1]), reason: Stuck::Budget });
 }
 
 #[test]
