@@ -75,6 +75,7 @@ mod tests {
         assert!(counts(1e-14) && !counts(0.0) && !counts(1e-3));
         let flat = |height| is_mostly_flat(&folded(height), &[[0, 1]], 1e-10, |_| true);
         assert!(flat(1e-14) && flat(0.0) && !flat(1e-3));
+        assert!(!is_mostly_flat(&folded(0.0), &[[0, 1]], 0.0, |_| true));
     }
 
     #[test]

@@ -110,8 +110,7 @@ impl VisibleFaces {
     fn middle(&self) -> u128 {
         let (low, width) = (self.low.0, self.high.0 - self.low.0);
         let shift = width.max(1).ilog2().saturating_sub(BITS);
-        let middle = low + width / 2;
-        ((middle >> shift) << shift).max(low + width / 4)
+        ((low + width / 2) >> shift) << shift
     }
 }
 
@@ -342,5 +341,44 @@ impl<'a> Dig<'a> {
                 && !(4 * t..4 * t + 4).any(frozen)
                 && (0..4).all(|i| (0..i).all(|j| edges.contains(&sorted(v[i], v[j])) || !(self.keep)(v[i], v[j])))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_view_is_limited_by_the_nearest_faces() {
+        let of = |walls: &[(u32, Sight)]| VisibleFaces::of(walls.iter().copied());
+        let clear = of(&[(3, Sight::Everywhere)]);
+        assert_eq!((clear.low, clear.high, clear.blind), ((0, u32::MAX), (OnTriangle::ONE, u32::MAX), None));
+        let walls = [
+            (1, Sight::Before(900)),
+            (2, Sight::Before(800)),
+            (3, Sight::Before(800)),
+            (4, Sight::Behind(90)),
+            (5, Sight::Behind(100)),
+            (6, Sight::Behind(100)),
+            (7, Sight::Behind(20)),
+            (8, Sight::Before(850)),
+        ];
+        let view = of(&walls);
+        assert_eq!((view.low, view.high, view.blind, view.width()), ((100, 6), (800, 2), None, 700));
+        assert_eq!(of(&[(1, Sight::Before(5)), (2, Sight::Behind(8))]).width(), -3);
+        let blind = of(&[walls[0], (9, Sight::Nowhere)]);
+        assert_eq!((blind.blind, blind.width()), (Some(9), i128::MIN));
+    }
+
+    #[test]
+    fn the_middle_of_a_view_has_few_bits() {
+        let middle = |low, high| VisibleFaces { low: (low, 0), high: (high, 0), blind: None }.middle();
+        // Steps of 1/16 of the leading bit of the length.
+        assert_eq!(middle(100, 800), 448);
+        assert_eq!(middle(1000, 1015), 1007);
+        assert_eq!(middle(1000, 1032), 1016);
+        assert_eq!(middle(1001, 1033), 1016);
+        assert_eq!(middle(7, 7), 7);
+        assert_eq!(middle(0, OnTriangle::ONE), OnTriangle::ONE / 2);
     }
 }

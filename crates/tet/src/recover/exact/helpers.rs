@@ -51,7 +51,8 @@ fn place_beside(push: &mut Push, [a, b]: [u32; 2], corner: Option<u32>, salt: u6
     let (along, length) = ((q - p).normalize(), (q - p).norm());
     let coin = |k: u64| (hash(hash(u64::from(a) << 32 | u64::from(b)) ^ k) >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
     // The helpers of an edge lie in opposite directions, chosen at random to avoid planes of the input.
-    let any = Vec3::new(coin(1), coin(2), coin(3)) * if salt.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let any = Vec3::new(coin(1), coin(2), coin(3));
+    let any = if salt.is_multiple_of(2) { any } else { -any };
     let aim = corner.map_or(any, |c| (p - push.s.point(c)) + any * (0.1 * length));
     let aside = (aim - along * aim.dot(&along)).try_normalize(0.0)?;
     let height = HEIGHT * 0.1_f64.powi((salt / 2) as i32) * length;
