@@ -146,8 +146,7 @@ const PLANES: [(&str, Step); 3] = [
 fn tried(name: &str, count: u32) -> u32 {
     match name {
         "plates" => 16,
-        "split plates" => 10,
-        "complexes" => 10,
+        "split plates" | "complexes" => 10,
         _ => count,
     }
 }

@@ -277,3 +277,25 @@ impl Space {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_inserted_strictly_inside_a_tetrahedron() {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]].map(Point3::from);
+        let insert = |p: [f64; 3]| {
+            let c = crate::delaunay::delaunay(&corners).unwrap();
+            let mut s = Space::new(c, 0.0);
+            let v = s.insert_point(Point3::from(p));
+            s.check();
+            (v, s.c.real_tets().count(), s.c.points.len())
+        };
+        assert_eq!(insert([0.5, 1.0, 1.5]), (Some(4), 4, 5));
+        // On a face, on an edge, outside.
+        for p in [[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [2.0, 1.0, 1.0], [2.0, 0.0, 0.0], [4.0, 4.0, 4.0]] {
+            assert_eq!(insert(p), (None, 1, 4));
+        }
+    }
+}

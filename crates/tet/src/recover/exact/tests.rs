@@ -201,6 +201,28 @@ fn a_strategy_ends_after_some_rounds() {
 }
 
 #[test]
+fn a_strategy_ends_once_it_has_too_many_vertices() {
+    let surface = row(&twisted_prism(3, -0.5, 1.0), 4);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    let mut c = delaunay(&points).unwrap();
+    let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    let first = parts::parts(&surface.triangles, missing).swap_remove(0);
+    let segments = Segments::new(&edges, surface.points.len());
+    let push = Push::new(Space::new(c, 0.0), segments, surface.triangles.clone());
+    let way = (RecoveryStrategy::GIVEN[0], 0, 100);
+    let Err(Failed { error, rest, .. }) = Queue::new(push, (&surface, &edges), way, &Watch::NOBODY).run(missing) else {
+        panic!("the whole surface without a vertex");
+    };
+    let TetError::Stuck { part, reason: Stuck::Budget } = error else { panic!("{error}") };
+    let known = first.triangles.iter().map(|&t| Obstacle::Triangle(surface.triangles[t as usize]));
+    assert!(first.edges.iter().map(|&edge| Obstacle::Edge(edge)).chain(known).any(|known| known == part), "{part}");
+    assert_eq!(rest.edges.len() + rest.triangles.len(), lost_edges.len() + lost_triangles.len());
+}
+
+#[test]
 fn wider_cavities_fill_as_well() {
     push::WIDER_FIRST.set(true);
     fills_all(&twisted_prism(5, 0.3, 1.0));
@@ -274,6 +296,21 @@ fn segments_and_facets_that_dangle_are_recovered() {
     let (surface, segments) = dangling(300, 5, 0.15);
     let summary = fills(&surface, &segments, InputKind::Plc).unwrap();
     assert!(summary.on_segments > 20 && summary.on_facets > 20, "{summary:?}");
+}
+
+#[test]
+fn points_on_segments_are_named() {
+    for direction in [Vec3::x(), -Vec3::y(), Vec3::new(1.0, -1.0, 0.0), Vec3::new(-0.5, 1.0, 0.25)] {
+        for count in [0, 60] {
+            let mut points = scatter(count);
+            let n = points.len() as u32;
+            points.extend([[7.0, 0.0, 9.0], [8.0, 0.0, 9.0], [8.0, 1.0, 9.0]].map(Point3::from));
+            points.extend([-0.5, 0.0, 0.25].map(|share| Point3::new(0.5, 0.5, 0.5) + direction * share));
+            let surface = TriMesh { points, triangles: vec![[n, n + 1, n + 2]] };
+            let met = fills(&surface, &[[n + 3, n + 5]], InputKind::Plc).unwrap_err();
+            assert_eq!(met, TetError::EdgeMeets { edge: [n + 3, n + 5], obstacle: Obstacle::Point(n + 4) });
+        }
+    }
 }
 
 #[test]
