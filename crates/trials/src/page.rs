@@ -153,28 +153,30 @@ target/release/anastomesh-trials repeat                                # all fin
 target/release/anastomesh-trials page                                  # this page
 ```
 
-`.ci/long` runs these commands. A kind that was tried n times has the seeds 0 to n - 1, and `--state FILE` with a new file begins
-again at 0. Results are kept in [trust.jsonl](trust.jsonl), with a line for each kind and build.
+`.ci/long 60` repeats the findings, runs all kinds for an hour, and compares them with earlier builds. A kind that was tried n times has
+the seeds 0 to n - 1, and `--state FILE` with a new file begins again at 0. Results are kept in [trust.jsonl](trust.jsonl), with a line for
+each kind and build.
 
 Runs from {first} to {last}. Builds: {}.
 
-Each case ends in one of four ways:
+Each case ends in one of five ways:
 
 - **Valid**: exit code 0, and both checkers accept the mesh. In brackets: cases with cells that the second checker does not read, such as
   those of second order.
-- **Beyond a limit**: a mesh that both checkers accept, with exit code 1. The message names the limit, such as the distance from the
-  network.
-- **Called not valid**: exit code 1, and both checkers agree that the mesh is not valid.
+- **Beyond a limit**: a valid mesh that differs from the input by more than a limit, such as the distance from the network. The exit code
+  is 1, and the message names the limit.
+- **Called not valid**: exit code 1, and both checkers agree that the mesh is not valid. The program says so. `--refine` helps in most
+  cases.
 - **Refused**: a documented exit code with a message, and no file at the output.
 - **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
-  Limits grow with inputs of more than 2,000 edges, triangles or lines.
+  The limit of time grows in proportion for inputs of more than 2,000 edges, triangles or lines, that of memory up to fourfold.
 
-Figures are sums over all builds, but for one column. *Of the last, %* has the share that is valid or beyond a limit with
-the newest builds. They are as few as have at least {LAST} cases of a kind. Their number is in brackets.
+All columns but one add up all builds. *Of the last, %* is the share that is valid or beyond a limit with the newest builds of a kind, as
+many as are needed for {LAST} cases. The number of these cases is in brackets.
 
-A mesh is wrong and called valid if the program calls it valid and at least one checker does not. N is the number of valid meshes that both
-checkers read. If none is wrong, the share of wrong ones is below 3/N with 95 % confidence, for input like that of the trials. Times are
-processor times of one thread.
+A mesh is wrong and called valid if the checkers disagree, or if the exit code is 0 and one of them rejects it. N is the number of valid
+meshes that both checkers read. If none is wrong, the share of wrong ones is below 3/N with 95 % confidence, for input like that of the
+trials. Times are processor times of a run with one thread. In messages, N stands for a number.
 
 ",
         versions.iter().map(|v| format!("`{v}`")).collect::<Vec<_>>().join(", ")
@@ -287,8 +289,8 @@ fn findings(kinds: &BTreeMap<&str, Sum>, batches: &[Batch]) -> String {
         for ((seed, sort), version) in &sum.findings {
             let repeated = batches.iter().rfind(|b| b.repeats && b.kind == *kind && b.first == *seed);
             let status = match repeated.map(|batch| (batch.findings.first(), &batch.version)) {
-                None => "not repeated".to_owned(),
-                Some((None, version)) => format!("gone with {}", code_span(version)),
+                None => "not run again".to_owned(),
+                Some((None, version)) => format!("passes with {}", code_span(version)),
                 Some((Some(found), version)) => format!("{} with {}", found.sort, code_span(version)),
             };
             let _ = writeln!(out, "| {kind} | {seed} | {sort} | {} | {status} |", code_span(version));
@@ -322,7 +324,7 @@ mod tests {
             "{page}"
         );
         assert!(page.contains("| star | 3 | `it\\|is 'open'` | 9 |"), "{page}");
-        assert!(page.contains("| networks/star | 7 | panic | `` | gone with `next` |\n\n## Fuzzing\n"), "{page}");
+        assert!(page.contains("| networks/star | 7 | panic | `` | passes with `next` |\n\n## Fuzzing\n"), "{page}");
     }
 
     #[test]

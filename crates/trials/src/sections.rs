@@ -37,12 +37,13 @@ fn day(figure: &Value) -> &str {
 fn mutation(figures: &[&Value]) -> String {
     let mut out = String::from(
         "## Mutation\n\n\
-         Each mutant is a small change of the sources. The tests should fail with it. The score is the share of mutants with which they \
-         fail or\ntake too long. Mutants that do not compile are not counted. A score of a sample has an interval of 95 % confidence.\n\
+         Each mutant is a small change of the sources. The tests should fail with it. The score is the share of compiled mutants that make a \
+         test fail\nor time out. A score of a sample has an interval of 95 % confidence. Not tried: deleted fields of structures, and \
+         constants for functions that\nreturn `impl Trait`. The table in `.ci/long` has the files of each part.\n\
          `anastomesh-mutants` tries each mutant with the tests that reach it, without those that run the program. Mutants that cannot be\n\
-         caught, such as those that change only the speed, have a reason in [survivors.txt](../crates/mutants/survivors.txt). They count as missed.\n\n\
+         caught, or are not worth a test, have a reason in [survivors.txt](../crates/mutants/survivors.txt). They count as missed.\n\n\
          Command: `.ci/long mutants`, or `PARTS=\"check store\" .ci/long mutants` for some parts\n\n\
-         | part | tried | of | caught | timeouts | missed | of these with a reason | unviable | score, % | day |\n\
+         | part | tried | of | caught | timeouts | missed | missed, explained | unviable | score, % | day |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for figure in figures {
@@ -64,7 +65,8 @@ fn score([tried, of, caught, timeouts, missed, ..]: [u64; 7]) -> String {
         return "–".into();
     }
     let score = format!("{:.1}", percent(part, whole));
-    if tried == of {
+    // Kinds that are not tried are no random sample.
+    if 10 * tried >= 8 * of {
         return score;
     }
     let [low, high] = wilson(part, whole);
@@ -108,8 +110,7 @@ fn coverage(figures: &[&Value]) -> String {
     let days: Vec<&str> = figures.iter().map(|figure| day(figure)).collect();
     let mut out = format!(
         "## Coverage\n\nLines that the tests of the crates in the table run, on {}. A row in bold is a crate. The row of its folder `src` \
-         has the files\ndirectly in it.\n\nCommand: `.ci/long coverage` for all crates, or \
-         `PACKAGES=\"anastomesh-mesh anastomesh-tet\" .ci/long coverage`\n\n| part | lines | covered | % |\n|---|---|---|---|\n",
+         has the files\ndirectly in it.\n\nCommand: `.ci/long coverage`\n\n| part | lines | covered | % |\n|---|---|---|---|\n",
         days.join(", ")
     );
     for ((name, folder), [lines, covered]) in rows {

@@ -148,7 +148,7 @@ fn write_at(file: &mut File, start: u64, pieces: &[&[u8]]) -> io::Result<()> {
     pieces.iter().try_for_each(|piece| file.write_all(piece))
 }
 
-fn checksum(key: Key, bytes: &[u8]) -> u64 {
+pub(super) fn checksum(key: Key, bytes: &[u8]) -> u64 {
     // Length and both halves of the key count too.
     let seed = key.0 as u64 ^ ((key.0 >> 64) as u64).rotate_left(32) ^ bytes.len() as u64;
     xxh3_64_with_seed(bytes, seed)

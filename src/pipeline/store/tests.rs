@@ -175,6 +175,14 @@ fn every_number_of_a_section_counts_for_its_key() {
 }
 
 #[test]
+fn every_bit_of_a_key_counts_for_the_checksum() {
+    for key in [0, u128::MAX, 0x0123_4567_89ab_cdef_0f1e_2d3c_4b5a_6978] {
+        let sum = |key: u128| log::checksum(Key(key), b"record");
+        assert!((0..128).all(|bit| sum(key ^ 1 << bit) != sum(key)), "{key:x}");
+    }
+}
+
+#[test]
 fn pieces_of_tissue_are_kept_like_blocks() {
     use anastomesh_domain::Shelf;
     let store = Store::in_memory();
@@ -276,6 +284,9 @@ fn shards_are_joined_when_all_are_complete() {
     }
     fs::write(&path, &whole).expect("written");
     assert_holds(&open(alone).expect("both exist"), 7);
+    // Shards run at the same time.
+    let both = [0, 1].map(|i| open(Role::Shard(shards[i])).expect("a shard"));
+    drop(both);
     // A shard that is made again is not finished until it is marked.
     drop(open(Role::Shard(shards[0])).expect("a shard"));
     assert!(matches!(open(alone), Err(StoreError::Missing { .. })));
