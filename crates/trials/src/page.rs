@@ -165,14 +165,13 @@ Each case ends in one of five ways:
   those of second order.
 - **Beyond a limit**: a valid mesh that differs from the input by more than a limit, such as the distance from the network. The exit code
   is 1, and the message names the limit.
-- **Called not valid**: exit code 1, and both checkers agree that the mesh is not valid. The program says so. `--refine` helps in most
-  cases.
+- **Called not valid**: exit code 1, and both checkers agree that the mesh is not valid. `--refine` helps in most cases.
 - **Refused**: a documented exit code with a message, and no file at the output.
 - **Finding**: anything else. Examples are a panic, a run of more than 60 s of processor time, more than 3 GiB of memory, and checkers that disagree.
   The limit of time grows in proportion for inputs of more than 2,000 edges, triangles or lines, that of memory up to fourfold.
 
-All columns but one add up all builds. *Of the last, %* is the share that is valid or beyond a limit with the newest builds of a kind, as
-many as are needed for {LAST} cases. The number of these cases is in brackets.
+All columns but one add up all builds. *Of the last, %* is the share that is valid or beyond a limit with the newest builds of a kind. They
+are as many as {LAST} cases need, whose number is in brackets.
 
 A mesh is wrong and called valid if the checkers disagree, or if the exit code is 0 and one of them rejects it. N is the number of valid
 meshes that both checkers read. If none is wrong, the share of wrong ones is below 3/N with 95 % confidence, for input like that of the
