@@ -38,7 +38,7 @@ impl Part {
     }
 }
 
-/// Copies the files that Git knows, and removes others of an earlier copy but not the build.
+/// Copies the files that Git knows. Files that have not changed keep their time, so that they are not compiled again.
 ///
 /// # Errors
 ///
