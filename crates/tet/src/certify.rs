@@ -381,3 +381,7 @@ fn signed_volume(surface: &TriMesh, sign: impl Fn(usize) -> f64) -> (f64, f64) {
     }
     (volume, magnitude)
 }
+
+#[cfg(test)]
+#[path = "certify_tests.rs"]
+mod tests;

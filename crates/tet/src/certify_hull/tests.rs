@@ -27,9 +27,13 @@ impl Parts {
         Self { points: points.to_vec(), cells }
     }
 
-    fn certify(&self) -> Result<Vec<[u32; 3]>, CertifyError> {
+    fn complex(&self) -> Complex {
         let vertex_tet = vec![NONE; self.points.len()];
-        certify_hull(&Complex::from_cells(self.points.clone(), self.cells.clone(), Vec::new(), vertex_tet))
+        Complex::from_cells(self.points.clone(), self.cells.clone(), Vec::new(), vertex_tet)
+    }
+
+    fn certify(&self) -> Result<Vec<[u32; 3]>, CertifyError> {
+        certify_hull(&self.complex())
     }
 
     fn is_ghost(&self, t: u32) -> bool {
@@ -97,6 +101,9 @@ fn tetrahedra_that_are_inverted_flat_or_out_of_range_are_found() {
     let mut out = sound.clone();
     out.cells[tet as usize].verts[2] = 1_000_000;
     assert!(matches!(out.certify(), Err(CertifyError::NotPositive { tet: t, .. }) if t == tet));
+    let mut next = sound.clone();
+    next.cells[tet as usize].verts[2] = sound.points.len() as u32;
+    assert!(matches!(next.certify(), Err(CertifyError::NotPositive { tet: t, .. }) if t == tet));
     let mut nan = sound.clone();
     nan.points[sound.cells[tet as usize].verts[0] as usize].x = f64::NAN;
     assert!(matches!(nan.certify(), Err(CertifyError::NotPositive { .. })));
@@ -105,6 +112,7 @@ fn tetrahedra_that_are_inverted_flat_or_out_of_range_are_found() {
 #[test]
 fn every_wrong_neighbor_is_found() {
     let sound = Parts::of(&cube());
+    assert_eq!(one_sided(&sound.complex()), None);
     for half in 0..4 * sound.cells.len() as u32 {
         let mate = sound.mate(half);
         // Pointing nowhere, at nothing that exists, at itself, at another face of the neighbour, at another cell.
@@ -114,6 +122,8 @@ fn every_wrong_neighbor_is_found() {
             broken.cells[(half >> 2) as usize].mates[(half & 3) as usize] = wrong;
             let result = broken.certify();
             assert!(matches!(result, Err(CertifyError::NotConforming { .. })), "{half} -> {wrong}: {result:?}");
+            // Neither the face nor its former neighbour has a mate that refers back to it.
+            assert_eq!(one_sided(&broken.complex()), Some(half.min(mate)), "{half} -> {wrong}");
         }
     }
 }
