@@ -51,7 +51,8 @@ impl<'a> Tree<'a> {
         self.append_switches()?;
         for round in 0..ROUNDS {
             let rewritten = self.write()?;
-            let errors = self.cargo(&["check", "--keep-going"], packages)?.iter().flat_map(errors).collect::<Vec<_>>();
+            let (_, messages) = self.cargo(&["check", "--keep-going"], packages)?;
+            let errors: Vec<Error> = messages.iter().flat_map(errors).collect();
             let wrong: BTreeSet<u32> = errors
                 .iter()
                 .filter_map(|error| Some(rewritten.get(&error.file)?.mutants_at(&error.bytes)))
@@ -59,9 +60,12 @@ impl<'a> Tree<'a> {
                 .collect();
             eprintln!("build {round}: {} errors, {} mutants removed", errors.len(), wrong.len());
             if errors.is_empty() {
-                let messages = self.cargo(&["test", "--no-run"], packages)?;
+                let (is_built, messages) = self.cargo(&["test", "--no-run"], packages)?;
                 let all = messages.iter().filter_map(program);
-                return Ok(all.filter(|program| is_chosen(program, packages)).collect());
+                let chosen: Vec<Program> = all.filter(|program| is_chosen(program, packages)).collect();
+                // Without its tests, a mutant would count as missed.
+                let problem = || io::Error::other("the tests of the copy do not compile, or there are none");
+                return (is_built && !chosen.is_empty()).then_some(chosen).ok_or_else(problem);
             }
             if wrong.is_empty() {
                 return Err(io::Error::other(format!("errors without a mutant: {:?}", errors[0])));
@@ -103,7 +107,8 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    fn cargo(&self, command: &[&str], packages: &[String]) -> io::Result<Vec<Value>> {
+    /// Runs cargo. Returns true if it succeeds, and its messages.
+    fn cargo(&self, command: &[&str], packages: &[String]) -> io::Result<(bool, Vec<Value>)> {
         let output = Command::new("cargo")
             .args(command)
             .arg("--message-format=json")
@@ -113,7 +118,8 @@ impl<'a> Tree<'a> {
             .env("RUSTFLAGS", "--cap-lints=allow")
             .stderr(Stdio::null())
             .output()?;
-        Ok(output.stdout.split(|b| *b == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect())
+        let lines = output.stdout.split(|b| *b == b'\n');
+        Ok((output.status.success(), lines.filter_map(|line| serde_json::from_slice(line).ok()).collect()))
     }
 }
 

@@ -45,6 +45,13 @@ fn fills_all(surface: &TriMesh) -> ExactSummary {
     fills(surface, &[], InputKind::Closed).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// Delaunay tetrahedralization of the points of a surface and of a box around it.
+fn in_a_box(surface: &TriMesh) -> Complex {
+    let mut points = surface.points.clone();
+    points.extend(conform::box_corners(&surface.points));
+    delaunay(&points).unwrap()
+}
+
 #[test]
 fn twisted_prisms_are_filled() {
     // Three sides make Schönhardt's polyhedron; more sides have only concave triangles, too.
@@ -83,9 +90,7 @@ fn row(of: &TriMesh, count: u32) -> TriMesh {
 fn what_is_recovered_before_a_budget_ends_is_kept() {
     let surface = row(&twisted_prism(3, -0.5, 1.0), 12);
     let edges = validate(&surface, &[], InputKind::Closed).unwrap();
-    let mut points = surface.points.clone();
-    points.extend(conform::box_corners(&surface.points));
-    let mut c = delaunay(&points).unwrap();
+    let mut c = in_a_box(&surface);
     let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
     let start = |c: Complex| {
         let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
@@ -116,9 +121,7 @@ fn what_is_recovered_before_a_budget_ends_is_kept() {
 fn an_attempt_that_recovered_nothing_is_not_repeated() {
     let surface = twisted_prism(5, 0.3, 1.0);
     let edges = validate(&surface, &[], InputKind::Closed).unwrap();
-    let mut points = surface.points.clone();
-    points.extend(conform::box_corners(&surface.points));
-    let mut c = delaunay(&points).unwrap();
+    let mut c = in_a_box(&surface);
     let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
     let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
     let mut recovery = ExactRecovery::new(c, (&surface, &edges), missing, flat_height(&surface.points));
@@ -174,9 +177,7 @@ fn strategies_that_differ_in_edges_alone_fail_alike_without_edges() {
 fn starved(count: u32) -> (usize, Vec<[u32; 2]>, TetError) {
     let surface = row(&twisted_prism(3, -0.5, 1.0), count);
     let edges = validate(&surface, &[], InputKind::Closed).unwrap();
-    let mut points = surface.points.clone();
-    points.extend(conform::box_corners(&surface.points));
-    let mut c = delaunay(&points).unwrap();
+    let mut c = in_a_box(&surface);
     let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
     let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
     let parts = parts::parts(&surface.triangles, missing);
@@ -204,9 +205,7 @@ fn a_strategy_ends_after_some_rounds() {
 fn a_strategy_ends_once_it_has_too_many_vertices() {
     let surface = row(&twisted_prism(3, -0.5, 1.0), 4);
     let edges = validate(&surface, &[], InputKind::Closed).unwrap();
-    let mut points = surface.points.clone();
-    points.extend(conform::box_corners(&surface.points));
-    let mut c = delaunay(&points).unwrap();
+    let mut c = in_a_box(&surface);
     let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
     let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
     let first = parts::parts(&surface.triangles, missing).swap_remove(0);
