@@ -64,7 +64,7 @@ impl<'a> Tree<'a> {
                 let all = messages.iter().filter_map(program);
                 let chosen: Vec<Program> = all.filter(|program| is_chosen(program, packages)).collect();
                 // Without its tests, a mutant would count as missed.
-                let problem = || io::Error::other("the tests of the copy do not compile, or there are none");
+                let problem = || io::Error::other("the tests of the copy do not compile, or none exist");
                 return (is_built && !chosen.is_empty()).then_some(chosen).ok_or_else(problem);
             }
             if wrong.is_empty() {
