@@ -3,7 +3,7 @@
 use super::buried::buried;
 use super::end_surface::{CutEnd, EndSurface, disc_rim};
 use super::error::{BlockError, FlattenFailure};
-use super::faithful::Astray;
+use super::faithful::{Astray, fused_by_field};
 use super::layered::{ThinLayers, Walled, disc_at_end};
 use super::loops::Loops;
 use super::params::{BlockParams, EndStyle, filling};
@@ -207,6 +207,11 @@ fn cluster_surface(
     {
         let source = CapError::End { end, node: Some(node), origin: section.origin, reason: CapFailure::Buried };
         return Err(BlockError::Cap { cluster: id, source });
+    }
+    if !params.allow_fused
+        && let Some([at, _]) = fused_by_field(cluster, params.kappa, watch).map_err(|stop| stopped(id, stop))?
+    {
+        return Err(BlockError::Fused { cluster: id, at: at.into() });
     }
     let thin = smallest_radius(cluster);
     let voxel = 2.0 * thin / params.rho * params.voxel_factor;

@@ -4,6 +4,7 @@
 //! vessel.
 
 use crate::partition::Cluster;
+use crate::surface::Field;
 use anastomesh_mesh::TriMesh;
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::predicates::orient3d;
@@ -24,6 +25,10 @@ const FAR: f64 = 4.5;
 const FEW: usize = 8;
 /// Operations per pair of close vessels, as counted by budgets.
 const PER_PAIR: usize = 20;
+/// Maximum distance form of the field deep in a lumen, more than a grid cell from the wall, where it is 1.
+const DEEP: f64 = 0.6;
+/// Number of steps between two axes in which the field is sampled.
+const SAMPLES: u8 = 16;
 
 /// Deviations of a wall from its vessels; empty unless they are allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -90,30 +95,56 @@ fn inner_tubes(cluster: &Cluster) -> impl Iterator<Item = &Tube> {
     beyond.into_iter().zip(&cluster.tubes).filter(|(beyond, _)| !beyond).map(|(_, tube)| tube)
 }
 
-/// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them. The crotch of a
+/// Two points on axes of vessels that are close but distant along the skeleton, with no wall between them.
+fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Point3; 2]>, Stop> {
+    let mut walls = WallSearch::new(wall);
+    first_joined(cluster, watch, |p, q| {
+        watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
+        Ok(!walls.is_parted(p, q))
+    })
+}
+
+/// Like [`fused`], but from the field, before there is a wall: two points with a deep lumen between them. `None` proves nothing.
+///
+/// # Errors
+/// [`Stop`] if the watch stops it.
+pub(super) fn fused_by_field(cluster: &Cluster, kappa: f64, watch: &Watch) -> Result<Option<[Point3; 2]>, Stop> {
+    let mut made = None;
+    first_joined(cluster, watch, |p, q| {
+        // A field that cannot be made is reported by the contour.
+        let Ok(field) = made.get_or_insert_with(|| Field::new(&cluster.tubes, kappa)) else { return Ok(false) };
+        let is_deep = |k| field.value(&(p + (q - p) * (f64::from(k) / f64::from(SAMPLES)))) < DEEP;
+        let are_deep = (0..=SAMPLES).all(is_deep);
+        watch.spend(field.operations())?;
+        Ok(are_deep)
+    })
+}
+
+/// First pair of points on axes of vessels that are close but distant along the skeleton, and that `joins` has. The crotch of a
 /// bifurcation does not count, however long it is: there the given tubes overlap, and so do their lumens. Neither does the
 /// web beyond it.
-fn fused(wall: &TriMesh, cluster: &Cluster, watch: &Watch) -> Result<Option<[Point3; 2]>, Stop> {
+fn first_joined(
+    cluster: &Cluster,
+    watch: &Watch,
+    mut joins: impl FnMut(&Point3, &Point3) -> Result<bool, Stop>,
+) -> Result<Option<[Point3; 2]>, Stop> {
     let skeleton = widened(cluster);
     let adjacency = skeleton.adjacency();
     let overlaps = skeleton.overlaps(&adjacency);
     let mut ways = LocalDistances::default();
-    let mut is_far = |o: &&Overlap| {
+    let mut is_far = |o: &Overlap| {
         o.nodes[0].iter().all(|&start| {
             ways.search(&skeleton, &adjacency, start, FAR * o.radii);
             o.nodes[1].iter().all(|&n| ways.of(n).is_infinite())
         })
     };
-    let mut walls = WallSearch::new(wall);
     let mut crotches = CrotchSearch::default();
+    let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR, ..CrotchRule::default() };
     for o in &overlaps.pairs {
         watch.spend(PER_PAIR)?;
-        if is_far(&o) {
-            watch.spend(if walls.searched < FEW { wall.triangles.len() / 16 } else { 0 })?;
-            let rule = CrotchRule { narrower: 1.0 / NEAR, beyond: FAR, ..CrotchRule::default() };
-            if !walls.is_parted(&o.points[0], &o.points[1]) && !crotches.is_in_crotch(&skeleton, &adjacency, o, rule) {
-                return Ok(Some(o.points));
-            }
+        let [p, q] = &o.points;
+        if is_far(o) && joins(p, q)? && !crotches.is_in_crotch(&skeleton, &adjacency, o, rule) {
+            return Ok(Some(o.points));
         }
     }
     Ok(None)
@@ -247,6 +278,31 @@ mod tests {
         assert!(pairs > FEW as u64);
         // The first searches pass over all triangles, further ones over a tree.
         assert_eq!(budget.spent(), 20 * pairs + 8 * (wall.triangles.len() / 16) as u64);
+    }
+
+    #[test]
+    fn the_field_shows_that_vessels_fuse_before_there_is_a_wall() {
+        let by_field = |cluster: &Cluster| fused_by_field(cluster, 0.35, &Watch::NOBODY).unwrap();
+        // A vessel that crosses itself at some height.
+        let crossing = |height: f64| {
+            cluster(&[[0., 0., 0.], [20., 0., 0.], [20., 12., height], [10., 12., height], [10., -12., height]])
+        };
+        let heights = (0..30).map(|i| 0.1 * f64::from(i));
+        let mut counts = [0; 2];
+        for cluster in heights.map(crossing).chain([1.2, 1.7, 2.2, 2.6, 4.0].map(helix)) {
+            let found =
+                [by_field(&cluster).is_some(), fused(&wall(&cluster), &cluster, &Watch::NOBODY).unwrap().is_some()];
+            assert!(!found[0] || found[1]);
+            (0..2).for_each(|i| counts[i] += usize::from(found[i]));
+        }
+        assert!(counts[0] > 10 && counts[1] > counts[0] && counts[1] < 30, "{counts:?}");
+        let [p, q] = by_field(&crossing(0.5)).expect("it is found");
+        assert!(
+            (p - Point3::new(10.0, 0.0, 0.0)).norm() < 1e-9 && (q - Point3::new(10.0, 0.0, 0.5)).norm() < 1e-9,
+            "{p} {q}"
+        );
+        let no_time = Budget::new(10);
+        assert!(fused_by_field(&crossing(0.5), 0.35, &Watch::NOBODY.within(&no_time)).is_err());
     }
 
     #[test]
