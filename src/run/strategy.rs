@@ -341,8 +341,12 @@ impl<'a> Meshing<'a, '_> {
             (Strategy::Unrefined, Fault::Volume(_)) if !networks.overlaps_at_forks_alone() => None,
             (Strategy::Unrefined, _) if networks.prepare.measured && networks.excludes_a_mesh() => None,
             (Strategy::Unrefined, _) => Some(networks.again(None)),
-            // Another refinement would give up, too.
-            (Strategy::WiderClearance, _) if networks.refine.as_ref().is_some_and(|report| report.gave_up) => None,
+            // Another refinement would leave them, too.
+            (Strategy::WiderClearance, _)
+                if networks.refine.as_ref().is_some_and(|r| r.gave_up || r.residual.left > 0) =>
+            {
+                None
+            }
             (Strategy::WiderClearance, Fault::NoMesh | Fault::Invalid) => {
                 let params = self.refine.as_ref()?;
                 let params = params.clone().clearance(WIDER * params.clearance).near(NEAR);

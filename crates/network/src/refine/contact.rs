@@ -61,11 +61,11 @@ fn reach_box(tube: &Tube, clearance: f64) -> Aabb {
 }
 
 impl Contacts {
-    /// Finds all pairs that may come within `clearance` sums of their radii before any node moves more than `skin / 2`. In
-    /// `measured` networks without those in the crotch of a bifurcation, which do not overlap.
-    pub fn find(frame: &Frame, clearance: f64, skin: f64, measured: bool) -> Self {
+    /// Finds all pairs that may come within `clearance` sums of their radii while the nodes of each edge move by at most its skin.
+    /// In `measured` networks without those in the crotch of a bifurcation, which do not overlap.
+    pub fn find(frame: &Frame, clearance: f64, skins: &[f64], measured: bool) -> Self {
         let s = &frame.skeleton;
-        let found = search(frame, clearance, skin, &vec![true; s.edges.len()]);
+        let found = search(frame, clearance, skins, &vec![true; s.edges.len()]);
         let crotches = if measured { in_crotches(s, &frame.adjacency, clearance) } else { Vec::new() };
         let crotches: FxHashSet<[EdgeId; 2]> = crotches.into_iter().collect();
         let tips = if measured { tip_clearances(s, &frame.adjacency, clearance) } else { FxHashMap::default() };
@@ -89,10 +89,10 @@ impl Contacts {
     }
 
     /// Searches again for the pairs of edges of `nodes`. Other nodes may still move as far as before the last search.
-    pub fn search_again(&mut self, frame: &Frame, clearance: f64, skin: f64, nodes: &[bool]) {
+    pub fn search_again(&mut self, frame: &Frame, clearance: f64, skins: &[f64], nodes: &[bool]) {
         let is_searched: Vec<bool> =
             frame.skeleton.edges.iter().map(|edge| edge.nodes.iter().any(|node| nodes[node.index()])).collect();
-        let found = search(frame, clearance, skin, &is_searched);
+        let found = search(frame, clearance, skins, &is_searched);
         let mut new: Vec<(Pair, &[Ways])> =
             found.iter().flat_map(|(pairs, ways)| pairs.iter().map(move |pair| (*pair, &ways[..]))).collect();
         new.par_sort_unstable_by_key(|(pair, _)| pair.edges);
@@ -191,9 +191,10 @@ fn ascending([e, f]: [EdgeId; 2]) -> [EdgeId; 2] {
 
 /// Pairs of edges, one of which at least is searched, with their distances along the skeleton. Those of the first edge are
 /// sorted, in chunks.
-fn search(frame: &Frame, clearance: f64, skin: f64, is_searched: &[bool]) -> Vec<(Vec<Pair>, Vec<Ways>)> {
+fn search(frame: &Frame, clearance: f64, skins: &[f64], is_searched: &[bool]) -> Vec<(Vec<Pair>, Vec<Ways>)> {
     let s = &frame.skeleton;
-    let boxes: Vec<Aabb> = s.edge_ids().map(|e| reach_box(&s.tube(e), clearance).grown(0.5 * skin)).collect();
+    let boxes: Vec<Aabb> =
+        s.edge_ids().zip(skins).map(|(e, skin)| reach_box(&s.tube(e), clearance).grown(*skin)).collect();
     let tree = Bvh::new(&boxes);
     let edges: Vec<u32> = (0..).zip(is_searched).filter_map(|(e, &searched)| searched.then_some(e)).collect();
     let chunks = edges.par_chunks(256).map_init(
@@ -208,7 +209,7 @@ fn search(frame: &Frame, clearance: f64, skin: f64, is_searched: &[bool]) -> Vec
                     }
                 });
                 near.sort_unstable();
-                pairs_of(frame, EdgeId(e), near, clearance, skin, walks, &mut out);
+                pairs_of(frame, EdgeId(e), near, (clearance, skins), walks, &mut out);
             }
             out
         },
@@ -220,15 +221,14 @@ fn pairs_of(
     frame: &Frame,
     first: EdgeId,
     near: &[EdgeId],
-    clearance: f64,
-    skin: f64,
+    (clearance, skins): (f64, &[f64]),
     walks: &mut [LocalDistances; 2],
     out: &mut (Vec<Pair>, Vec<Ways>),
 ) {
     let s = &frame.skeleton;
     let tube = s.tube(first);
     let ends = s.edge(first).nodes;
-    let mut radius = tube.max_radius();
+    let (mut radius, mut furthest) = (tube.max_radius(), 0.0_f64);
     let start = out.0.len();
     for &second in near {
         let other = s.tube(second);
@@ -237,8 +237,10 @@ fn pairs_of(
             continue;
         }
         let axes = segment_segment([&tube.a, &tube.b], [&other.a, &other.b]);
+        let skin = skins[first.index()] + skins[second.index()];
         if axes.distance < clearance * (tube.max_radius() + other.max_radius()) + skin {
             radius = radius.max(other.max_radius());
+            furthest = furthest.max(skin);
             out.0.push(Pair { edges: [first, second], ways: u32::MAX });
         }
     }
@@ -246,7 +248,7 @@ fn pairs_of(
         return;
     }
     for (walk, end) in walks.iter_mut().zip(ends) {
-        walk.search(s, &frame.adjacency, end, JOINED * radius + skin);
+        walk.search(s, &frame.adjacency, end, JOINED * radius + furthest);
     }
     for i in start..out.0.len() {
         let nodes = s.edge(out.0[i].edges[1]).nodes;
@@ -353,15 +355,15 @@ mod tests {
         let skeleton = tangle(6, 3);
         let unit = paper_unit(&skeleton);
         let mut frame = Frame::new(skeleton, 1e9, 1e9, unit);
-        let (clearance, skin) = (1.1, 30.0 * unit);
-        let mut contacts = Contacts::find(&frame, clearance, skin, false);
+        let (clearance, skins) = (1.1, &vec![15.0 * unit; frame.skeleton.edges.len()]);
+        let mut contacts = Contacts::find(&frame, clearance, skins, false);
         let before: Vec<_> = contacts.pairs.iter().map(|pair| pair.edges).collect();
         let is_moved: Vec<bool> = (0..frame.skeleton.nodes.len()).map(|i| i % 7 == 3).collect();
         for (node, _) in frame.skeleton.nodes.iter_mut().zip(&is_moved).filter(|(_, moved)| **moved) {
             node.position += Vec3::new(4.0, -3.0, 2.0) * unit;
         }
-        contacts.search_again(&frame, clearance, skin, &is_moved);
-        let anew = Contacts::find(&frame, clearance, skin, false);
+        contacts.search_again(&frame, clearance, skins, &is_moved);
+        let anew = Contacts::find(&frame, clearance, skins, false);
         let edges = |contacts: &Contacts| contacts.pairs.iter().map(|pair| pair.edges).collect::<Vec<_>>();
         assert_eq!(edges(&contacts), edges(&anew));
         assert_ne!(edges(&anew), before);

@@ -10,7 +10,7 @@ use super::shape;
 use super::tighten::{Groups, close, kept};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
-use anastomesh_skeleton::{Adjacency, EdgeId, NodeId, Overlap, Overlaps, Skeleton};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, NodeId, Overlap, Overlaps, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Maximum number of rounds in which nodes return that came too close to others. In the second half, whole groups do.
@@ -23,6 +23,8 @@ const PULL: f64 = 0.12;
 /// Projections after each pull, and after the last one.
 const PROJECTIONS: usize = 4;
 const LAST_PROJECTIONS: usize = 80;
+/// Maximum number of pairs of close vessels, a constant and a number per edge. Vessels of denser networks do not settle.
+const MAX_PAIRS: [usize; 2] = [100_000, 200];
 /// Factor on the clearance of the projections, which leave pairs slightly short of it.
 const MARGIN: f64 = 1.005;
 /// Exponent of the combined correction of a node, as in the iterations.
@@ -123,21 +125,22 @@ fn settled(
     let mut frame = Frame::new(skeleton.clone(), 0.0, f64::INFINITY, unit);
     frame.hold();
     frame.origin = origin.to_vec();
-    let mut furthest: f64 = 0.0;
+    let mut off = vec![0.0_f64; origin.len()];
     for node in skeleton.node_ids().filter(|n| groups[n.index()].is_some()) {
-        let off = (frame.at(node) - origin[node.index()]).norm();
-        frame.loosen(node, off);
-        furthest = furthest.max(off);
+        off[node.index()] = (frame.at(node) - origin[node.index()]).norm();
+        frame.loosen(node, off[node.index()]);
     }
     // A node stays within its displacement of its place, so that these pairs suffice.
-    let mut contacts = Contacts::find(&frame, MARGIN * clearance, 4.0 * furthest, true);
+    let skin = |edge: &Edge| 2.0 * edge.nodes.map(|n| off[n.index()]).into_iter().fold(0.0, f64::max);
+    let skins: Vec<f64> = skeleton.edges.iter().map(skin).collect();
+    let mut contacts = Contacts::find(&frame, MARGIN * clearance, &skins, true);
     contacts.drop_fixed(&frame);
+    if contacts.pairs.len() > MAX_PAIRS[0] + MAX_PAIRS[1] * skeleton.edges.len() {
+        return Ok(skeleton.nodes.iter().map(|n| n.position).collect());
+    }
     // Pairs that cannot have the clearance would push all nodes around them for nothing.
     contacts.smaller = before.iter().map(|(&pair, relative)| (pair, MARGIN * clearance * relative)).collect();
     for pull in 0..=PULLS {
-        if progress.is_cancelled() {
-            return Err(RefineError::Cancelled);
-        }
         if pull < PULLS {
             for i in (0..origin.len()).filter(|&i| frame.mobility[i] > 0.0) {
                 let from = frame.skeleton.nodes[i].position;
@@ -145,6 +148,9 @@ fn settled(
             }
         }
         for _ in 0..if pull < PULLS { PROJECTIONS } else { LAST_PROJECTIONS } {
+            if progress.is_cancelled() {
+                return Err(RefineError::Cancelled);
+            }
             if !project(&mut frame, &contacts, MARGIN * clearance) {
                 break;
             }

@@ -34,7 +34,7 @@ const PATIENCE: usize = 4;
 
 /// Maximum number of pairs of close vessels that are pushed apart, over all iterations: a constant, and a number per edge. Shared
 /// measured networks take at most 3 million in total. Only networks in which nearly everything overlaps exceed it.
-const PUSHES: [u64; 2] = [3_000_000, 1000];
+const PUSHES: [u64; 2] = [3_000_000, 20_000];
 /// Pairs pushed apart in the time of testing one pair for overlap.
 const COUNT: u64 = 30;
 
@@ -258,15 +258,16 @@ impl<'a> Solver<'a> {
 
     /// Searches for contacts, if possible of nodes that have moved far alone.
     fn find_contacts(&mut self, skin: f64) {
+        let skins = vec![0.5 * skin; self.frame.skeleton.edges.len()];
         let is_far: Vec<bool> = self.moved.iter().map(|&m| m > FAR * skin).collect();
         let far = is_far.iter().filter(|&&is_far| is_far).count();
         if self.leashes.is_some() || far > is_far.len() / FEW {
             // Frees the old contacts first, to save memory.
             self.contacts = Contacts::default();
-            self.contacts = Contacts::find(&self.frame, self.params.clearance, skin, self.leashes.is_some());
+            self.contacts = Contacts::find(&self.frame, self.params.clearance, &skins, self.leashes.is_some());
             self.moved.fill(0.0);
         } else {
-            self.contacts.search_again(&self.frame, self.params.clearance, skin, &is_far);
+            self.contacts.search_again(&self.frame, self.params.clearance, &skins, &is_far);
             self.moved.iter_mut().zip(is_far).filter(|(_, is_far)| *is_far).for_each(|(moved, _)| *moved = 0.0);
         }
     }
