@@ -60,6 +60,7 @@ fn merge(mut sum: Batch, batch: &Batch) -> Batch {
     sum.count += batch.count;
     sum.valid += batch.valid;
     sum.valid_by_one += batch.valid_by_one;
+    (sum.seconds, sum.timed) = (sum.seconds + batch.seconds, sum.timed + batch.timed);
     batch.typed.iter().for_each(|(message, count)| *sum.typed.entry(message.clone()).or_default() += count);
     sum.findings.extend(batch.findings.iter().cloned());
     sum.findings.sort_by(|a, b| (a.seed, &a.sort).cmp(&(b.seed, &b.sort)));
@@ -113,11 +114,11 @@ mod tests {
     fn batches_of_a_build_are_summed() {
         let mut first = Batch { valid: 1, valid_by_one: 1, worst: 0.5, worst_seed: 1, ..batch("1", 0, 3) };
         first.findings.push(Finding { seed: 2, sort: "panic".into(), text: "at x".into() });
-        let mut last = Batch { valid: 2, worst: 0.75, worst_seed: 6, ..batch("1", 5, 3) };
+        let mut last = Batch { valid: 2, worst: 0.75, worst_seed: 6, seconds: 1.25, timed: 3, ..batch("1", 5, 3) };
         last.typed.insert("3: no".into(), 1);
         let text = lines(&[first, Batch { valid: 2, ..batch("2", 3, 2) }, last]);
         let expected = r#"{"count":2,"date":"2026-01-13","first":3,"kind":"a/b","valid":2,"version":"2"}
-{"count":6,"date":"2026-01-10","end":8,"findings":[{"seed":2,"sort":"panic","text":"at x"}],"kind":"a/b","typed":{"3: no":1},"until":"2026-01-15","valid":3,"valid_by_one":1,"version":"1","worst_s":0.75,"worst_seed":6}
+{"count":6,"date":"2026-01-10","end":8,"findings":[{"seed":2,"sort":"panic","text":"at x"}],"kind":"a/b","sum_s":1.25,"timed":3,"typed":{"3: no":1},"until":"2026-01-15","valid":3,"valid_by_one":1,"version":"1","worst_s":0.75,"worst_seed":6}
 "#;
         assert_eq!(compacted(&text), expected);
         assert_eq!(compacted(expected), expected);

@@ -160,6 +160,7 @@ fn one_batch(
 /// Adds the outcome of a case to a batch.
 pub fn record(batch: &mut Batch, seed: u64, judged: &Judged) {
     batch.count += 1;
+    (batch.seconds, batch.timed) = (batch.seconds + judged.seconds, batch.timed + 1);
     if judged.seconds > batch.worst {
         (batch.worst, batch.worst_seed) = (judged.seconds, seed);
     }

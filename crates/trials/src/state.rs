@@ -39,6 +39,10 @@ pub struct Batch {
     pub worst: f64,
     /// Seed of the longest case.
     pub worst_seed: u64,
+    /// Sum of the processor seconds of the cases in `timed`.
+    pub seconds: f64,
+    /// Cases whose time is recorded. Lines of earlier versions have none.
+    pub timed: u64,
     /// True if the batch repeats earlier findings with another build.
     pub repeats: bool,
     /// Version and build of the program.
@@ -70,8 +74,8 @@ impl Batch {
             "kind": self.kind, "first": self.first, "count": self.count, "valid": self.valid,
             "valid_by_one": self.valid_by_one, "typed": self.typed, "findings": findings,
             // Fewer digits than a parser may change.
-            "worst_s": (self.worst * 1e3).round() / 1e3,
-            "worst_seed": self.worst_seed, "repeats": self.repeats, "version": self.version, "date": self.date,
+            "worst_s": (self.worst * 1e3).round() / 1e3, "sum_s": (self.seconds * 1e3).round() / 1e3,
+            "timed": self.timed, "worst_seed": self.worst_seed, "repeats": self.repeats, "version": self.version, "date": self.date,
             "until": self.until, "end": if self.end > self.first + self.count { self.end } else { 0 },
         });
         if let Some(fields) = line.as_object_mut() {
@@ -99,6 +103,8 @@ impl Batch {
                 .collect::<Option<_>>()?,
             worst: value["worst_s"].as_f64().unwrap_or(0.0),
             worst_seed: number("worst_seed"),
+            seconds: value["sum_s"].as_f64().unwrap_or(0.0),
+            timed: number("timed"),
             repeats: value["repeats"].as_bool().unwrap_or(false),
             version: text(&value["version"]),
             date: text(&value["date"]),
@@ -183,7 +189,8 @@ mod tests {
     fn batches_survive_a_cut_line() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("state/trials.jsonl");
-        let mut batch = Batch { kind: "a/b".into(), first: 5, count: 3, worst: 0.25, ..Batch::default() };
+        let mut batch =
+            Batch { kind: "a/b".into(), first: 5, count: 3, worst: 0.25, seconds: 0.5, timed: 3, ..Batch::default() };
         batch.typed.insert("3: no".into(), 2);
         batch.findings.push(Finding { seed: 6, sort: "panic".into(), text: "at \"x\"".into() });
         append(&path, &batch).expect("written");
