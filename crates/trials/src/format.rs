@@ -22,3 +22,8 @@ pub fn grouped(number: u64) -> String {
     }
     out
 }
+
+/// Number and noun, in the plural unless the number is 1.
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
+}

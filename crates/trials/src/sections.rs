@@ -26,7 +26,8 @@ pub fn text(figures: &[Value]) -> String {
     out
 }
 
-fn part(figure: &Value) -> &str {
+/// Name of the part.
+pub fn part(figure: &Value) -> &str {
     figure["part"].as_str().unwrap_or_default()
 }
 
@@ -56,6 +57,16 @@ fn mutation(figures: &[&Value]) -> String {
         out += &missed(figure);
     }
     out
+}
+
+/// Part with the lowest score, and this score in percent.
+pub fn lowest_score<'a>(figures: &[&'a Value]) -> Option<(&'a Value, f64)> {
+    let score = |figure: &'a Value| {
+        let [caught, timeouts, missed] = ["caught", "timeouts", "missed"].map(|key| number(figure, key));
+        let whole = caught + timeouts + missed;
+        (whole > 0).then(|| (figure, percent(caught + timeouts, whole)))
+    };
+    figures.iter().copied().filter_map(score).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Score in percent, with its interval if the mutants are a sample.
