@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::overlapping::in_crotches;
 use super::push::{Push, project};
 use anastomesh_mesh::geometry::{Aabb, Bvh, Tube, Vec3, segment_segment, tube_tube};
-use anastomesh_skeleton::{Adjacency, EdgeId, JOINED, LocalDistances, NodeId, Skeleton, deepest_apart};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, JOINED, LocalDistances, NodeId, Skeleton, deepest_apart};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -17,6 +17,8 @@ pub(super) struct Pair {
     pub edges: [EdgeId; 2],
     /// Index into `Contacts::ways`; `u32::MAX` if all distances are long.
     ways: u32,
+    /// Distance that the two edges may move together, from the search on, before they can be too close.
+    slack: f32,
 }
 
 impl Pair {
@@ -123,10 +125,19 @@ impl Contacts {
         self.forks.retain(|(_, pair)| pair.iter().any(|&e| moves(e)));
     }
 
-    /// Corrections of all pairs closer than `clearance` sums of their radii.
-    pub fn pushes(&self, frame: &Frame, clearance: f64) -> Vec<Push> {
+    /// Corrections of all pairs closer than `clearance` sums of their radii. `moved`: upper bound of the displacement of each node
+    /// since the last search for its contacts.
+    pub fn pushes(&self, frame: &Frame, clearance: f64, moved: &[f64]) -> Vec<Push> {
+        let of_edge = |edge: &Edge| edge.nodes.map(|n| moved[n.index()]).into_iter().fold(0.0, f64::max);
+        let moved: Vec<f64> = frame.skeleton.edges.iter().map(of_edge).collect();
+        let is_asleep = |pair: &Pair| {
+            let [e, f] = pair.edges.map(|e| moved[e.index()]);
+            e + f < f64::from(pair.slack)
+        };
         let apart = self.pairs.par_iter().with_min_len(512).fold(Vec::new, |mut out, pair| {
-            self.push_apart(frame, pair, self.clearance(pair.edges, clearance), &mut out);
+            if !is_asleep(pair) {
+                self.push_apart(frame, pair, self.clearance(pair.edges, clearance), &mut out);
+            }
             out
         });
         let forks = self.forks.par_iter().with_min_len(512).fold(Vec::new, |mut out, fork| {
@@ -238,10 +249,11 @@ fn pairs_of(
         }
         let axes = segment_segment([&tube.a, &tube.b], [&other.a, &other.b]);
         let skin = skins[first.index()] + skins[second.index()];
-        if axes.distance < clearance * (tube.max_radius() + other.max_radius()) + skin {
+        let slack = axes.distance - clearance * (tube.max_radius() + other.max_radius());
+        if slack < skin {
             radius = radius.max(other.max_radius());
             furthest = furthest.max(skin);
-            out.0.push(Pair { edges: [first, second], ways: u32::MAX });
+            out.0.push(Pair { edges: [first, second], ways: u32::MAX, slack: (slack as f32).next_down() });
         }
     }
     if out.0.len() == start {

@@ -10,7 +10,7 @@ use super::shape;
 use super::tighten::{Groups, close, kept};
 use anastomesh_mesh::geometry::{Point3, Vec3};
 use anastomesh_mesh::progress::Progress;
-use anastomesh_skeleton::{Adjacency, Edge, EdgeId, NodeId, Overlap, Overlaps, Skeleton};
+use anastomesh_skeleton::{Adjacency, Edge, EdgeId, Node, NodeId, Overlap, Overlaps, Skeleton};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Maximum number of rounds in which nodes return that came too close to others. In the second half, whole groups do.
@@ -151,7 +151,7 @@ fn settled(
             if progress.is_cancelled() {
                 return Err(RefineError::Cancelled);
             }
-            if !project(&mut frame, &contacts, MARGIN * clearance) {
+            if !project(&mut frame, &contacts, &skeleton.nodes, MARGIN * clearance) {
                 break;
             }
         }
@@ -159,9 +159,11 @@ fn settled(
     Ok(frame.skeleton.nodes.iter().map(|n| n.position).collect())
 }
 
-/// Pushes vessels apart once. Returns false if all have the clearance.
-fn project(frame: &mut Frame, contacts: &Contacts, clearance: f64) -> bool {
-    let pushes = contacts.pushes(frame, clearance);
+/// Pushes vessels apart once. Returns false if all have the clearance. `searched`: nodes at the search for contacts.
+fn project(frame: &mut Frame, contacts: &Contacts, searched: &[Node], clearance: f64) -> bool {
+    let nodes = frame.skeleton.nodes.iter().zip(searched);
+    let moved: Vec<f64> = nodes.map(|(now, then)| (now.position - then.position).norm()).collect();
+    let pushes = contacts.pushes(frame, clearance, &moved);
     if pushes.is_empty() {
         return false;
     }

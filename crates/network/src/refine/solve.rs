@@ -239,7 +239,7 @@ impl<'a> Solver<'a> {
             add(&forces::pushes(&self.frame, &self.contacts, &barrier, rates));
         }
         self.spent += self.contacts.pairs.len() as u64;
-        let contacts = self.contacts.pushes(&self.frame, self.params.clearance);
+        let contacts = self.contacts.pushes(&self.frame, self.params.clearance, &self.moved);
         // If only overlapping vessels move, none is lengthened or opened for a cut.
         let room =
             if self.leashes.is_some() { cut_length::lengths(&self.frame) } else { cut_length::pushes(&self.frame) };
