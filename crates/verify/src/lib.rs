@@ -21,6 +21,7 @@ mod labels;
 mod mesh;
 mod msh;
 mod network;
+mod numbers;
 mod regions;
 mod report;
 mod sets;

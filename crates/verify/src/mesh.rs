@@ -89,20 +89,3 @@ pub(crate) fn fail<T>(reason: impl Into<String>) -> Read<T> {
 pub(crate) fn index(number: i64) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
-
-/// Words of a text as numbers; `None` at the end or for another word.
-pub(crate) fn next<'a, T: std::str::FromStr>(words: &mut impl Iterator<Item = &'a str>) -> Option<T> {
-    words.next().and_then(|word| word.parse().ok())
-}
-
-/// The next `N` numbers of a text.
-pub(crate) fn next_n<'a, T, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Option<[T; N]>
-where
-    T: std::str::FromStr + Copy + Default,
-{
-    let mut numbers = [T::default(); N];
-    for number in &mut numbers {
-        *number = next(words)?;
-    }
-    Some(numbers)
-}

@@ -1,6 +1,8 @@
 //! Reader of Gmsh's MSH files: 4.1 in text or binary, 2.2 in text.
 
-use crate::mesh::{Cap, Mesh, Read, fail, index, next, next_n};
+use crate::mesh::{Cap, Mesh, Read, ReadError, fail, index};
+use crate::numbers::{DOUBLE, INT, LONG, Numbers, Order};
+use bstr::ByteSlice as _;
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -8,50 +10,63 @@ const LINE: i64 = 1;
 const TRIANGLE: i64 = 2;
 const TETRAHEDRON: i64 = 4;
 const POINT: i64 = 15;
+/// Number of nodes of each kind of element.
+const LENGTHS: [(i64, i64); 4] = [(POINT, 1), (LINE, 2), (TRIANGLE, 3), (TETRAHEDRON, 4)];
 
 /// Reads a mesh.
 pub fn read(bytes: &[u8]) -> Read<Mesh> {
     let Some(head) = section(bytes, "MeshFormat") else { return fail("no section $MeshFormat") };
-    let head = String::from_utf8_lossy(&head[..head.len().min(30)]).into_owned();
+    let head = head.lines().next().unwrap_or_default().to_str_lossy();
     let mut words = head.split_ascii_whitespace();
     let (version, is_binary) = (words.next().unwrap_or_default(), words.next() == Some("1"));
     let mut parts = Parts::default();
     names(bytes, &mut parts.mesh)?;
     notes(bytes, &mut parts)?;
+    let order = if is_binary { Order::Little } else { Order::Text };
     match version {
         "4.1" => {
-            let body = |name| Cursor { rest: section(bytes, name).unwrap_or_default(), is_binary };
-            parts.read_4(body("Entities"), body("Nodes"), body("Elements"))
+            let groups = numbers(bytes, "Entities", order, groups)?;
+            numbers(bytes, "Nodes", order, |nodes| parts.add_nodes_4(nodes))?;
+            numbers(bytes, "Elements", order, |elements| parts.add_elements_4(elements, &groups))?;
         }
-        "2.2" if !is_binary => parts.read_2(bytes),
-        other => fail(format!("MSH {other}{} is not supported", if is_binary { " binary" } else { "" })),
+        "2.2" if !is_binary => {
+            numbers(bytes, "Nodes", order, |nodes| parts.add_nodes_2(nodes))?;
+            parts.add_elements_2(text(bytes, "Elements")?)?;
+        }
+        other => {
+            return fail(format!("MSH {}{} is not supported", other, if is_binary { " binary" } else { "" }));
+        }
     }
+    Ok(parts.mesh)
 }
 
 /// Bytes of a section, without the line of its name.
 fn section<'a>(bytes: &'a [u8], name: &str) -> Option<&'a [u8]> {
-    let find = |text: String, from: usize| {
-        bytes[from..].windows(text.len()).position(|window| window == text.as_bytes()).map(|at| from + at)
-    };
-    let start = find(format!("${name}"), 0)?;
-    let start = start + bytes[start..].iter().position(|&b| b == b'\n')? + 1;
-    Some(&bytes[start..find(format!("$End{name}"), start)?])
+    let (_, rest) = bytes.split_once_str(&format!("${name}"))?;
+    let (_, rest) = rest.split_once_str("\n")?;
+    rest.split_once_str(&format!("$End{name}")).map(|(body, _)| body)
 }
 
 fn text<'a>(bytes: &'a [u8], name: &str) -> Read<&'a str> {
     let body = section(bytes, name).unwrap_or_default();
-    std::str::from_utf8(body).or_else(|_| fail(format!("section ${name} is not UTF-8")))
+    body.to_str().or_else(|_| fail(format!("section ${name} is not UTF-8")))
+}
+
+/// Result of a reader of numbers for a section, which may be missing.
+fn numbers<T>(bytes: &[u8], name: &str, order: Order, read: impl FnOnce(Numbers) -> Read<T>) -> Read<T> {
+    let numbers = Numbers { rest: section(bytes, name).unwrap_or_default(), order };
+    read(numbers).map_err(|e| ReadError(format!("section ${name}: {e}")))
 }
 
 fn names(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
     for line in text(bytes, "PhysicalNames")?.lines().skip(1) {
-        let mut parts = line.splitn(3, ' ');
-        let (Some(dimension), Some(id)) = (next::<i64>(&mut parts), next(&mut parts)) else {
+        let mut numbers = Numbers::text(line);
+        let Ok([dimension, id]) = numbers.array::<i64, 2>(LONG) else {
             return fail(format!("bad line '{line}' of $PhysicalNames"));
         };
-        let name = parts.next().unwrap_or_default().trim().trim_matches('"');
         if dimension == 2 {
-            mesh.patches.push((id, name.to_owned()));
+            let name = numbers.rest.to_str_lossy();
+            mesh.patches.push((id, name.trim().trim_matches('"').to_owned()));
         }
     }
     Ok(())
@@ -123,107 +138,78 @@ impl Parts {
         true
     }
 
-    fn read_4(mut self, mut entities: Cursor, mut nodes: Cursor, mut elements: Cursor) -> Read<Mesh> {
-        let mut labels = HashMap::new();
-        if !entities.rest.is_empty() {
-            let counts = [entities.size()?, entities.size()?, entities.size()?, entities.size()?];
-            for (dimension, &count) in counts.iter().enumerate() {
-                for _ in 0..count {
-                    let tag = entities.int()?;
-                    (0..if dimension == 0 { 3 } else { 6 }).try_for_each(|_| entities.real().map(drop))?;
-                    for i in 0..entities.size()? {
-                        let label = entities.int()?;
-                        if i == 0 {
-                            labels.insert((dimension as i64, tag), label);
-                        }
-                    }
-                    let bounds = if dimension == 0 { 0 } else { entities.size()? };
-                    (0..bounds).try_for_each(|_| entities.int().map(drop))?;
-                }
-            }
-        }
-        let [blocks, _, _, _] = [nodes.size()?, nodes.size()?, nodes.size()?, nodes.size()?];
+    fn add_nodes_4(&mut self, mut nodes: Numbers) -> Read<()> {
+        let [blocks, ..] = nodes.array::<i64, 4>(LONG)?;
         for _ in 0..blocks {
-            let [dimension, _, parametric] = [nodes.int()?, nodes.int()?, nodes.int()?];
-            let count = nodes.size()?;
-            let numbers = (0..count).map(|_| nodes.size()).collect::<Read<Vec<_>>>()?;
-            for number in numbers {
-                let point = [nodes.real()?, nodes.real()?, nodes.real()?];
-                (0..if parametric == 1 { dimension } else { 0 }).try_for_each(|_| nodes.real().map(drop))?;
+            let [dimension, _, parametric] = nodes.array::<i64, 3>(INT)?;
+            let count = nodes.next(LONG)?;
+            for number in nodes.list(LONG, count)? {
+                let point = nodes.array(DOUBLE)?;
+                nodes.list::<f64>(DOUBLE, if parametric == 1 { dimension } else { 0 })?;
                 self.add_node(number, point)?;
             }
         }
-        let [blocks, _, _, _] = [elements.size()?, elements.size()?, elements.size()?, elements.size()?];
+        Ok(())
+    }
+
+    fn add_elements_4(&mut self, mut elements: Numbers, groups: &HashMap<(i64, i64), i64>) -> Read<()> {
+        let [blocks, ..] = elements.array::<i64, 4>(LONG)?;
         for _ in 0..blocks {
-            let [dimension, tag, kind] = [elements.int()?, elements.int()?, elements.int()?];
-            let Some(length) = [(POINT, 1), (LINE, 2), (TRIANGLE, 3), (TETRAHEDRON, 4)].iter().find(|k| k.0 == kind)
-            else {
+            let [dimension, tag, kind] = elements.array(INT)?;
+            let Some((_, length)) = LENGTHS.iter().find(|(known, _)| *known == kind) else {
                 return fail(format!("elements of type {kind} are not supported"));
             };
-            let label = labels.get(&(dimension, tag)).copied().unwrap_or(0);
-            for _ in 0..elements.size()? {
-                elements.size()?;
-                let nodes = (0..length.1).map(|_| elements.size()).collect::<Read<Vec<_>>>()?;
-                self.add_element(kind, label, &nodes);
+            let label = groups.get(&(dimension, tag)).copied().unwrap_or(0);
+            for _ in 0..elements.next(LONG)? {
+                let numbers = elements.list(LONG, 1 + length)?;
+                self.add_element(kind, label, &numbers[1..]);
             }
         }
-        Ok(self.mesh)
+        Ok(())
     }
 
-    fn read_2(mut self, bytes: &[u8]) -> Read<Mesh> {
-        let mut words = text(bytes, "Nodes")?.split_ascii_whitespace();
-        for _ in 0..next::<usize>(&mut words).unwrap_or(0) {
-            let (Some(number), Some(point)) = (next(&mut words), next_n(&mut words)) else {
-                return fail("section $Nodes ends early or has a word that is not a number");
-            };
+    fn add_nodes_2(&mut self, mut nodes: Numbers) -> Read<()> {
+        for _ in 0..nodes.next(LONG)? {
+            let (number, point) = (nodes.next(LONG)?, nodes.array(DOUBLE)?);
             self.add_node(number, point)?;
         }
-        let mut lines = text(bytes, "Elements")?.lines().skip(1);
-        lines.try_for_each(|line| {
+        Ok(())
+    }
+
+    fn add_elements_2(&mut self, elements: &str) -> Read<()> {
+        for line in elements.lines().skip(1) {
             let numbers: Option<Vec<i64>> = line.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
-            let numbers = numbers.unwrap_or_default();
-            let tags = numbers.get(2).map_or(0, |&n| usize::try_from(n).unwrap_or(usize::MAX));
-            let nodes = tags.checked_add(3).and_then(|first| numbers.get(first..));
-            let label = if tags > 0 { numbers.get(3).copied().unwrap_or(0) } else { 0 };
-            match nodes {
-                Some(nodes) if self.add_element(numbers[1], label, nodes) => Ok(()),
-                _ => fail(format!("element '{line}' is damaged or not supported")),
+            // Number, kind, number of tags, tags and nodes. The first tag is the physical group.
+            let is_added = match numbers.as_deref() {
+                Some(&[_, kind, tags, ref rest @ ..]) => usize::try_from(tags)
+                    .ok()
+                    .and_then(|tags| rest.split_at_checked(tags))
+                    .is_some_and(|(tags, nodes)| self.add_element(kind, tags.first().copied().unwrap_or(0), nodes)),
+                _ => false,
+            };
+            if !is_added {
+                return fail(format!("element '{line}' is damaged or not supported"));
             }
-        })?;
-        Ok(self.mesh)
+        }
+        Ok(())
     }
 }
 
-/// Numbers of a section of MSH 4.1.
-struct Cursor<'a> {
-    rest: &'a [u8],
-    is_binary: bool,
-}
-
-impl Cursor<'_> {
-    fn bytes<const N: usize>(&mut self) -> Read<[u8; N]> {
-        let Some((first, rest)) = self.rest.split_first_chunk() else { return fail("a section ends early") };
-        self.rest = rest;
-        Ok(*first)
+/// Physical group of each entity by its dimension and tag.
+fn groups(mut entities: Numbers) -> Read<HashMap<(i64, i64), i64>> {
+    let mut groups = HashMap::new();
+    if entities.rest.is_empty() {
+        return Ok(groups);
     }
-
-    fn word<T: std::str::FromStr>(&mut self) -> Read<T> {
-        let text = self.rest.trim_ascii_start();
-        let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
-        self.rest = &text[length..];
-        let word = std::str::from_utf8(&text[..length]).ok().and_then(|word| word.parse().ok());
-        word.map_or_else(|| fail("a section ends early or has a word that is not a number"), Ok)
+    for (dimension, count) in (0..).zip(entities.array::<i64, 4>(LONG)?) {
+        for _ in 0..count {
+            let tag = entities.next(INT)?;
+            entities.list::<f64>(DOUBLE, if dimension == 0 { 3 } else { 6 })?;
+            let count = entities.next(LONG)?;
+            groups.extend(entities.list(INT, count)?.first().map(|&group| ((dimension, tag), group)));
+            let bounds = if dimension == 0 { 0 } else { entities.next(LONG)? };
+            entities.list::<i64>(INT, bounds)?;
+        }
     }
-
-    fn int(&mut self) -> Read<i64> {
-        if self.is_binary { Ok(i32::from_le_bytes(self.bytes()?).into()) } else { self.word() }
-    }
-
-    fn size(&mut self) -> Read<i64> {
-        if self.is_binary { Ok(i64::from_le_bytes(self.bytes()?)) } else { self.word() }
-    }
-
-    fn real(&mut self) -> Read<f64> {
-        if self.is_binary { Ok(f64::from_le_bytes(self.bytes()?)) } else { self.word() }
-    }
+    Ok(groups)
 }

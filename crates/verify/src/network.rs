@@ -2,7 +2,8 @@
 
 use crate::faces::Boundary;
 use crate::labels::WALL;
-use crate::mesh::{Cap, Mesh, Read, fail, next_n};
+use crate::mesh::{Cap, Mesh, Read, fail};
+use crate::numbers::{DOUBLE, Numbers};
 use crate::report::{Condition, Report};
 use crate::tree::Tree;
 use crate::xml::VtkFile;
@@ -61,8 +62,8 @@ fn swc(text: &str) -> Read<Vec<Cone>> {
     let mut nodes: HashMap<i64, ([f64; 3], f64)> = HashMap::new();
     let mut links = Vec::new();
     for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
-        let row: Option<[f64; 7]> = next_n(&mut line.split_ascii_whitespace());
-        let Some([id, _, x, y, z, radius, parent]) = row else { return fail(format!("bad row '{line}'")) };
+        let row = Numbers::text(line).array(DOUBLE);
+        let Ok([id, _, x, y, z, radius, parent]) = row else { return fail(format!("bad row '{line}'")) };
         nodes.insert(id as i64, ([x, y, z], radius));
         links.push([id as i64, parent as i64]);
     }
@@ -75,15 +76,15 @@ fn swc(text: &str) -> Read<Vec<Cone>> {
 
 fn vtp(bytes: &[u8]) -> Read<Vec<Cone>> {
     let file = VtkFile::parse(bytes)?;
-    let points = file.required("Points", "")?.real();
+    let points = file.required("Points", "")?;
     let points: &[[f64; 3]] = points.as_chunks().0;
-    let (vertices, ends) =
-        (file.required("Lines", "connectivity")?.whole()?, file.required("Lines", "offsets")?.whole()?);
+    let of = |name| file.required::<i64>("Lines", name);
+    let (vertices, ends) = (of("connectivity")?, of("offsets")?);
     let names = file.names("PointData");
     let Some(name) = names.iter().find(|name| name.to_ascii_lowercase().contains("radius")) else {
         return fail("the points have no radii");
     };
-    let radii = file.required("PointData", name)?.real();
+    let radii: Vec<f64> = file.required("PointData", name)?;
     let (mut cones, mut start) = (Vec::new(), 0);
     for end in ends {
         let end = usize::try_from(end).unwrap_or(usize::MAX);

@@ -1,8 +1,10 @@
 //! Readers of triangle surfaces (OFF, STL, PLY in text or binary), and the condition that a mesh keeps one.
 
 use crate::faces::{Boundary, key};
-use crate::mesh::{Mesh, Read, fail, next, next_n};
+use crate::mesh::{Mesh, Read, fail};
+use crate::numbers::{DOUBLE, Kind, LONG, Numbers, Order};
 use crate::report::{Condition, Report};
+use bstr::ByteSlice as _;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -33,90 +35,95 @@ pub fn check(surface: &Soup, mesh: &Mesh, boundary: &Boundary, report: &mut Repo
 }
 
 /// Triangles of polygons with vertices in a list of points. Polygons of more vertices are an error.
-fn soup(points: &[[f64; 3]], polygons: &[Vec<usize>]) -> Read<Soup> {
-    let corner = |&v: &usize| points.get(v).copied();
-    let triangle = |polygon: &Vec<usize>| match polygon.iter().map(corner).collect::<Option<Vec<_>>>()?[..] {
-        [a, b, c] => Some([a, b, c]),
-        _ => None,
-    };
+fn soup(points: &[[f64; 3]], polygons: &[Vec<i64>]) -> Read<Soup> {
+    let corner = |&v: &i64| points.get(usize::try_from(v).ok()?).copied();
+    let triangle = |polygon: &Vec<i64>| polygon.iter().map(corner).collect::<Option<Vec<_>>>()?.try_into().ok();
     let soup: Option<Soup> = polygons.iter().map(triangle).collect();
     soup.map_or_else(|| fail("a face is no triangle of points of the file"), Ok)
 }
 
 fn off(text: &str) -> Read<Soup> {
-    let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
-    let mut words = lines.flat_map(str::split_ascii_whitespace).skip_while(|&word| word == "OFF");
-    let counts: Option<[usize; 3]> = next_n(&mut words);
-    let Some([points, faces, _]) = counts else { return fail("no numbers of points and faces") };
-    let points: Option<Vec<[f64; 3]>> = (0..points).map(|_| next_n(&mut words)).collect();
-    let polygons: Option<Vec<Vec<usize>>> = (0..faces)
-        .map(|_| next(&mut words).and_then(|corners: usize| (0..corners).map(|_| next(&mut words)).collect()))
-        .collect();
-    match (points, polygons) {
-        (Some(points), Some(polygons)) => soup(&points, &polygons),
-        _ => fail("the file ends early or has a word that is not a number"),
-    }
+    let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or_default()).collect();
+    let text = lines.join("\n");
+    let mut numbers = Numbers::text(text.trim_start().trim_start_matches("OFF"));
+    let Ok([points, faces, _]) = numbers.array::<i64, 3>(LONG) else { return fail("no numbers of points and faces") };
+    let points = (0..points).map(|_| numbers.array(DOUBLE)).collect::<Read<Vec<_>>>()?;
+    let polygon = |_| {
+        let corners = numbers.next(LONG)?;
+        numbers.list(LONG, corners)
+    };
+    soup(&points, &(0..faces).map(polygon).collect::<Read<Vec<_>>>()?)
 }
 
 fn stl(bytes: &[u8]) -> Read<Soup> {
     let count = bytes.get(80..84).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes) as usize;
     if bytes.len() == 84 + 50 * count {
-        let number = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-        let corner = |b: &[u8]| [number(b), number(&b[4..]), number(&b[8..])];
-        let triangle = |b: &[u8]| [corner(&b[12..]), corner(&b[24..]), corner(&b[36..])];
-        return Ok(bytes[84..].chunks_exact(50).map(triangle).collect());
+        // A normal, three corners and two further bytes.
+        let triangle = |bytes| {
+            let mut numbers = Numbers { rest: bytes, order: Order::Little };
+            numbers.array::<f64, 12>(Kind::Real(4)).map(|numbers| [1, 2, 3].map(|i| numbers.as_chunks().0[i]))
+        };
+        return bytes[84..].chunks_exact(50).map(triangle).collect();
     }
     let text = String::from_utf8_lossy(bytes);
     let corners = text.lines().filter_map(|line| line.trim().strip_prefix("vertex "));
     // Readers of STL use 32-bit numbers; the text may have more digits.
-    let corner = |line: &str| next_n(&mut line.split_ascii_whitespace());
-    match corners.map(corner).collect::<Option<Vec<[f64; 3]>>>() {
-        Some(corners) if !corners.is_empty() && corners.len().is_multiple_of(3) => Ok(corners.as_chunks().0.to_vec()),
+    match corners.map(|corner| Numbers::text(corner).array(DOUBLE)).collect::<Read<Vec<[f64; 3]>>>() {
+        Ok(corners) if !corners.is_empty() && corners.len().is_multiple_of(3) => Ok(corners.as_chunks().0.to_vec()),
         _ => fail("no triangles, or a damaged one"),
     }
 }
 
 /// Element of a PLY file: name, number, and properties with the type of their list length (if any) and value.
-type Element<'a> = (&'a str, usize, Vec<(Option<&'a str>, &'a str, &'a str)>);
+type Element<'a> = (&'a str, i64, Vec<(Option<&'a str>, &'a str, &'a str)>);
 
-fn ply(bytes: &[u8]) -> Read<Soup> {
-    let mark = b"end_header";
-    let Some(end) = bytes.windows(mark.len()).position(|window| window == mark) else { return fail("no end_header") };
-    let body = end + bytes[end..].iter().position(|&b| b == b'\n').map_or(mark.len(), |newline| newline + 1);
-    let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
-    let (mut elements, mut format): (Vec<Element>, &str) = (Vec::new(), "");
+/// Elements and format of a PLY file.
+fn header(head: &str) -> (Vec<Element<'_>>, Order) {
+    let (mut elements, mut order): (Vec<Element>, _) = (Vec::new(), Order::Little);
     for line in head.lines() {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
         let property = match words[..] {
-            ["format", name, _] => {
-                format = name;
-                continue;
-            }
+            ["property", "list", length, kind, name] => (Some(length), kind, name),
+            ["property", kind, name] => (None, kind, name),
             ["element", name, count] => {
                 elements.push((name, count.parse().unwrap_or(0), Vec::new()));
                 continue;
             }
-            ["property", "list", length, kind, name] => (Some(length), kind, name),
-            ["property", kind, name] => (None, kind, name),
+            ["format", format, _] => {
+                order = match format {
+                    "ascii" => Order::Text,
+                    "binary_big_endian" => Order::Big,
+                    _ => Order::Little,
+                };
+                continue;
+            }
             _ => continue,
         };
         if let Some((_, _, properties)) = elements.last_mut() {
             properties.push(property);
         }
     }
-    let mut values = Values { rest: &bytes[body..], format };
+    (elements, order)
+}
+
+fn ply(bytes: &[u8]) -> Read<Soup> {
+    let Some((head, body)) = bytes.split_once_str("end_header") else { return fail("no end_header") };
+    let head = String::from_utf8_lossy(head);
+    let (elements, order) = header(&head);
+    let mut numbers = Numbers { rest: body.split_once_str("\n").map_or(body, |(_, rest)| rest), order };
+    let kind = |name| if order == Order::Text { Ok(DOUBLE) } else { Kind::named(name) };
     let (mut points, mut polygons) = (Vec::new(), Vec::new());
     for (name, count, properties) in elements {
         // Elements without properties take no bytes.
         for _ in 0..if properties.is_empty() { 0 } else { count } {
             let mut point = [0.0; 3];
-            for &(length, kind, property) in &properties {
-                let count = length.map_or(Ok(1.0), |length| values.next(length))? as usize;
-                let list = (0..count).map(|_| values.next(kind)).collect::<Read<Vec<f64>>>()?;
+            for &(length, of, property) in &properties {
+                let count = length.map_or(Ok(1.0), |length| numbers.next(kind(length)?))?;
+                let list: Vec<f64> = numbers.list(kind(of)?, count as i64)?;
                 match (length, ["x", "y", "z"].iter().position(|&axis| axis == property)) {
                     (None, Some(axis)) => point[axis] = list[0],
                     (Some(_), _) if name == "face" && property.starts_with("vert") => {
-                        polygons.push(list.iter().map(|&v| v as usize).collect());
+                        polygons.push(list.iter().map(|&v| v as i64).collect());
                     }
                     _ => {}
                 }
@@ -127,42 +134,6 @@ fn ply(bytes: &[u8]) -> Read<Soup> {
         }
     }
     soup(&points, &polygons)
-}
-
-/// Numbers after the header of a PLY file.
-struct Values<'a> {
-    rest: &'a [u8],
-    format: &'a str,
-}
-
-impl Values<'_> {
-    fn next(&mut self, kind: &str) -> Read<f64> {
-        if self.format == "ascii" {
-            let text = self.rest.trim_ascii_start();
-            let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
-            self.rest = &text[length..];
-            let number = std::str::from_utf8(&text[..length]).ok().and_then(|word| word.parse().ok());
-            return number.map_or_else(|| fail("the file ends early or has a word that is not a number"), Ok);
-        }
-        let width = match kind {
-            "char" | "int8" | "uchar" | "uint8" => 1,
-            "short" | "int16" | "ushort" | "uint16" => 2,
-            "int" | "int32" | "uint" | "uint32" | "float" | "float32" => 4,
-            "double" | "float64" => 8,
-            other => return fail(format!("type '{other}' is not supported")),
-        };
-        let Some((bytes, rest)) = self.rest.split_at_checked(width) else { return fail("the file ends early") };
-        self.rest = rest;
-        let fold = |n: u64, &b: &u8| n * 256 + u64::from(b);
-        let is_big = self.format == "binary_big_endian";
-        let n = if is_big { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
-        Ok(match kind {
-            "double" | "float64" => f64::from_bits(n),
-            "float" | "float32" => f64::from(f32::from_bits(n as u32)),
-            kind if kind.starts_with('u') => n as f64,
-            _ => (((n << (64 - 8 * width)) as i64) >> (64 - 8 * width)) as f64,
-        })
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Reader of VTU files.
 
 use crate::mesh::{Cap, Mesh, Read, fail, index};
-use crate::xml::{Numbers, VtkFile};
+use crate::xml::VtkFile;
 
 /// VTK's cell types.
 const TRIANGLE: i64 = 5;
@@ -14,27 +14,23 @@ const LABELS: [&str; 5] = ["patch", "PatchId", "gmsh:physical", "CellEntityIds",
 /// Reads a mesh of one piece.
 pub fn read(bytes: &[u8]) -> Read<Mesh> {
     let file = VtkFile::parse(bytes)?;
-    if file.kind != "UnstructuredGrid" || file.pieces != 1 {
-        return fail(format!("{} of {} pieces instead of an unstructured grid of one", file.kind, file.pieces));
+    if file.kind() != "UnstructuredGrid" || file.pieces != 1 {
+        return fail(format!("{} of {} pieces instead of an unstructured grid of one", file.kind(), file.pieces));
     }
-    let mut mesh = Mesh { points: file.required("Points", "")?.real().as_chunks().0.to_vec(), ..Mesh::default() };
-    let names = file.names("CellData");
-    let labels = match LABELS.iter().find(|label| names.contains(label)) {
-        Some(label) => Some(file.required("CellData", label)?.whole()?),
-        None => None,
-    };
-    let has_regions = names.contains(&"region");
-    let regions = has_regions.then(|| file.required("CellData", "region")?.whole()).transpose()?;
-    cells(&file, &mut mesh, [labels.as_deref(), regions.as_deref()])?;
+    let mut mesh = Mesh { points: file.required("Points", "")?.as_chunks().0.to_vec(), ..Mesh::default() };
+    cells(&file, &mut mesh)?;
     notes(&file, &mut mesh)?;
     Ok(mesh)
 }
 
-fn cells(file: &VtkFile, mesh: &mut Mesh, [labels, regions]: [Option<&[i64]>; 2]) -> Read<()> {
-    let of = |name| file.required("Cells", name)?.whole();
+fn cells(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
+    let names = file.names("CellData");
+    let data = |name: &&str| file.array::<i64>("CellData", name);
+    let labels = LABELS.iter().find(|label| names.contains(label)).map_or(Ok(None), data)?;
+    let regions = data(&"region")?;
+    let of = |name| file.required::<i64>("Cells", name);
     let (connectivity, ends, types) = (of("connectivity")?, of("offsets")?, of("types")?);
-    let differs = |array: Option<&[i64]>| array.is_some_and(|array| array.len() != types.len());
-    if ends.len() != types.len() || differs(labels) || differs(regions) {
+    if [Some(&ends), labels.as_ref(), regions.as_ref()].iter().flatten().any(|array| array.len() != types.len()) {
         return fail("arrays of cells differ in length");
     }
     let mut start = 0;
@@ -45,11 +41,11 @@ fn cells(file: &VtkFile, mesh: &mut Mesh, [labels, regions]: [Option<&[i64]>; 2]
         match (kind, vertices) {
             (TETRAHEDRON, &[a, b, c, d]) => {
                 mesh.tets.push([a, b, c, d].map(index));
-                mesh.tet_regions.extend(regions.map(|regions| regions[i]));
+                mesh.tet_regions.extend(regions.as_ref().map(|regions| regions[i]));
             }
             (TRIANGLE, &[a, b, c]) => {
                 mesh.triangles.push([a, b, c].map(index));
-                mesh.labels.push(labels.map_or(0, |labels| labels[i]));
+                mesh.labels.push(labels.as_ref().map_or(0, |labels| labels[i]));
             }
             (kind, _) if THIN.contains(&kind) => {}
             _ => return fail(format!("cell {i} of type {kind} with {} vertices is not supported", vertices.len())),
@@ -67,10 +63,7 @@ fn texts(bytes: Vec<i64>) -> Vec<String> {
 
 /// Field arrays that `anastomesh` writes: names of patches, caps and the expectation.
 fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
-    let whole = |name| match file.array("FieldData", name)? {
-        Some(numbers) => numbers.whole().map(Some),
-        None => Ok(None),
-    };
+    let whole = |name| file.array::<i64>("FieldData", name);
     if let Some(bytes) = whole("patch_names")? {
         // The first is the name of the volume. Numbers without a patch have no name.
         let named = (0..).zip(texts(bytes)).skip(1);
@@ -82,9 +75,9 @@ fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
     mesh.expected_loops = whole("expected_loops")?;
     mesh.expected_terminals = whole("expected_terminals")?;
     let Some(patches) = whole("cap_patch")? else { return Ok(()) };
-    let real = |name| file.required("FieldData", name).map(Numbers::real);
+    let real = |name| file.required::<f64>("FieldData", name);
     let (centers, normals, radii) = (real("cap_center")?, real("cap_normal")?, real("cap_radius")?);
-    let nodes = file.required("FieldData", "cap_node")?.whole()?;
+    let nodes = file.required::<i64>("FieldData", "cap_node")?;
     let (centers, normals) = (centers.as_chunks().0, normals.as_chunks().0);
     if [nodes.len(), centers.len(), normals.len(), radii.len()].iter().any(|&length| length != patches.len()) {
         return fail("arrays of caps differ in length");

@@ -1,105 +1,92 @@
-//! Arrays of VTK's XML files: text, base64 and appended data, raw or with zlib.
+//! Arrays of VTK's XML files, in text, base64 or appended data, raw or with zlib.
 
 use crate::mesh::{Read, ReadError, fail};
+use crate::numbers::{Kind, Number, Order};
+use base64::Engine as _;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use bstr::ByteSlice as _;
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::{Reader, XmlVersion};
 use std::collections::HashMap;
 use std::io::Read as _;
 
-/// Maximum length of the first reservation for an array, in numbers. Damaged headers reserve no more.
-const RESERVED: usize = 1 << 20;
+/// Decoder of base64 with or without padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_allow_trailing_bits(true)
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+type Attributes = HashMap<String, String>;
 
 /// XML file of VTK with its arrays.
+#[derive(Default)]
 pub struct VtkFile<'a> {
-    /// Attribute `type` of the file, such as `UnstructuredGrid`.
-    pub kind: String,
     /// Number of pieces.
     pub pieces: usize,
-    attributes: HashMap<String, String>,
+    attributes: Attributes,
     arrays: Vec<Array<'a>>,
     appended: &'a [u8],
-    is_raw: bool,
+    is_base64: bool,
 }
 
 struct Array<'a> {
     section: String,
-    attributes: HashMap<String, String>,
+    attributes: Attributes,
     text: &'a [u8],
-}
-
-/// Numbers of an array.
-pub enum Numbers {
-    /// Integers of any width.
-    Whole(Vec<i64>),
-    /// Floating-point numbers of any width.
-    Real(Vec<f64>),
-}
-
-impl Numbers {
-    /// Integers; floating-point numbers are an error.
-    pub fn whole(self) -> Read<Vec<i64>> {
-        match self {
-            Self::Whole(numbers) => Ok(numbers),
-            Self::Real(_) => fail("an array of indices has floating-point numbers"),
-        }
-    }
-
-    /// Numbers as 64-bit floating-point numbers.
-    pub fn real(self) -> Vec<f64> {
-        match self {
-            Self::Whole(numbers) => numbers.into_iter().map(|n| n as f64).collect(),
-            Self::Real(numbers) => numbers,
-        }
-    }
 }
 
 impl<'a> VtkFile<'a> {
     /// Finds the arrays of a file.
     pub fn parse(bytes: &'a [u8]) -> Read<Self> {
-        let mut file = Self {
-            kind: String::new(),
-            pieces: 0,
-            attributes: HashMap::new(),
-            arrays: Vec::new(),
-            appended: &[],
-            is_raw: true,
-        };
-        let (mut at, mut open) = (0, Vec::<String>::new());
-        while let Some(start) = find(bytes, at, b"<") {
-            let Some(end) = find(bytes, start, b">") else { return fail("a tag is not closed") };
-            at = end + 1;
-            let Ok(tag) = std::str::from_utf8(&bytes[start + 1..end]) else { return fail("a tag is not UTF-8") };
-            if tag.starts_with(['?', '!']) {
-                continue;
-            }
-            if tag.starts_with('/') {
-                open.pop();
-                continue;
-            }
-            let name = tag.split([' ', '\n', '\t', '\r', '/']).next().unwrap_or_default();
-            let attributes = attributes(tag);
-            match name {
-                "VTKFile" => {
-                    file.kind = attributes.get("type").cloned().unwrap_or_default();
-                    file.attributes = attributes;
-                }
-                "AppendedData" => {
-                    file.is_raw = attributes.get("encoding").is_none_or(|encoding| encoding == "raw");
-                    let first = find(bytes, at, b"_").map_or(bytes.len(), |underscore| underscore + 1);
-                    file.appended = &bytes[first..];
-                    break;
-                }
-                "DataArray" => {
-                    let text = &bytes[at..find(bytes, at, b"<").unwrap_or(bytes.len())];
+        let (mut file, mut open, mut reader) = (Self::default(), Vec::<String>::new(), Reader::from_reader(bytes));
+        let config = reader.config_mut();
+        (config.expand_empty_elements, config.check_end_names, config.allow_unmatched_ends) = (true, false, true);
+        while file.appended.is_empty() {
+            match reader.read_event() {
+                Ok(Event::Start(tag)) => {
                     let section = open.last().cloned().unwrap_or_default();
-                    file.arrays.push(Array { section, attributes, text });
+                    file.add(&tag, section, &bytes[reader.buffer_position() as usize..])?;
+                    open.push(tag.name().as_ref().to_owned());
                 }
-                "Piece" => file.pieces += 1,
-                _ => {}
-            }
-            if !tag.ends_with('/') {
-                open.push(name.to_owned());
+                Ok(Event::End(_)) => drop(open.pop()),
+                Ok(Event::Eof) => break,
+                Ok(_) => {}
+                Err(error) => return fail(format!("byte {}: {error}", reader.error_position())),
             }
         }
-        if file.kind.is_empty() { fail("not an XML file of VTK") } else { Ok(file) }
+        if file.kind().is_empty() { fail("not an XML file of VTK") } else { Ok(file) }
+    }
+
+    /// Adds a tag with the bytes that follow it.
+    fn add(&mut self, tag: &BytesStart, section: String, rest: &'a [u8]) -> Read<()> {
+        let mut attributes = Attributes::new();
+        for attribute in tag.attributes() {
+            let error = |e: &dyn std::fmt::Display| ReadError(format!("tag {}: {e}", tag.name().as_ref()));
+            let attribute = attribute.map_err(|e| error(&e))?;
+            let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| error(&e))?;
+            attributes.insert(attribute.key.as_ref().to_owned(), value.into_owned());
+        }
+        match tag.name().as_ref() {
+            "VTKFile" => self.attributes = attributes,
+            "Piece" => self.pieces += 1,
+            "DataArray" => {
+                let text = rest.split_once_str("<").map_or(rest, |(text, _)| text);
+                self.arrays.push(Array { section, attributes, text });
+            }
+            "AppendedData" => {
+                self.is_base64 = attributes.get("encoding").is_some_and(|encoding| encoding != "raw");
+                self.appended = rest.split_once_str("_").map_or(&[], |(_, data)| data);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Attribute `type` of the file, such as `UnstructuredGrid`.
+    pub fn kind(&self) -> &str {
+        of(&self.attributes, "type")
     }
 
     /// Names of the arrays of a section.
@@ -109,174 +96,107 @@ impl<'a> VtkFile<'a> {
     }
 
     /// Numbers of an array; `None` if the section has none of this name. An empty name is any name.
-    pub fn array(&self, section: &str, name: &str) -> Read<Option<Numbers>> {
-        let is_meant = |array: &&Array| {
-            array.section == section && (name.is_empty() || array.attributes.get("Name").is_some_and(|n| n == name))
+    pub fn array<T: Number>(&self, section: &str, name: &str) -> Read<Option<Vec<T>>> {
+        let is_meant = |a: &&Array| {
+            a.section == section && (name.is_empty() || a.attributes.get("Name").is_some_and(|n| n == name))
         };
-        let Some(array) = self.arrays.iter().find(is_meant) else { return Ok(None) };
-        self.decode(array).map(Some).map_err(|e| ReadError(format!("array '{name}' of {section}: {e}")))
+        let numbers = self.arrays.iter().find(is_meant).map(|array| self.decode(array)).transpose();
+        numbers.map_err(|e| ReadError(format!("array '{name}' of {section}: {e}")))
     }
 
     /// Numbers of an array that must exist.
-    pub fn required(&self, section: &str, name: &str) -> Read<Numbers> {
+    pub fn required<T: Number>(&self, section: &str, name: &str) -> Read<Vec<T>> {
         self.array(section, name)?.map_or_else(|| fail(format!("{section} has no array '{name}'")), Ok)
     }
 
-    fn decode(&self, array: &Array) -> Read<Numbers> {
-        let of = |name: &str| array.attributes.get(name).map_or("", String::as_str);
-        let kind = of("type");
-        let bytes = match of("format") {
-            "ascii" => return ascii(array.text, kind.starts_with("Float")),
-            "appended" => {
-                let offset = of("offset").parse().ok().and_then(|offset: usize| self.appended.get(offset..));
-                let Some(data) = offset else { return fail("its offset is beyond the file") };
-                self.payload(data, self.is_raw)?
+    fn decode<T: Number>(&self, array: &Array) -> Read<Vec<T>> {
+        let kind = Kind::named(of(&array.attributes, "type"))?;
+        if T::of(kind, 0).is_none() {
+            return fail("floating-point numbers instead of integers");
+        }
+        let bytes = match of(&array.attributes, "format") {
+            "ascii" => {
+                let words = array.text.to_str().unwrap_or("?").split_ascii_whitespace().map(|word| word.parse().ok());
+                return words.collect::<Option<_>>().map_or_else(|| fail("a word is not a number"), Ok);
             }
-            "binary" => self.payload(array.text.trim_ascii(), false)?,
+            "appended" => {
+                let offset = of(&array.attributes, "offset").parse().ok();
+                let Some(data) = offset.and_then(|offset: usize| self.appended.get(offset..)) else {
+                    return fail("its offset is beyond the file");
+                };
+                self.payload(data, self.is_base64)?
+            }
+            "binary" => self.payload(array.text.trim_ascii(), true)?,
             other => return fail(format!("unknown format '{other}'")),
         };
-        self.numbers(&bytes, kind)
+        let words = bytes.chunks_exact(kind.width());
+        if !words.remainder().is_empty() {
+            return fail("its length is no multiple of the size of a number");
+        }
+        Ok(words.filter_map(|word| T::of(kind, self.order().bits(word))).collect())
     }
 
     /// Bytes of an array, from its header on.
-    fn payload(&self, data: &[u8], is_raw: bool) -> Read<Vec<u8>> {
-        let word = if self.attributes.get("header_type").is_some_and(|t| t == "UInt64") { 8 } else { 4 };
-        let compressor = self.attributes.get("compressor").map_or("", String::as_str);
-        let start = |length: usize| decoded(data, length, is_raw);
-        let number = |bytes: &[u8], i: usize| self.word(&bytes[i * word..(i + 1) * word]);
-        let first = number(&start(word)?, 0);
-        if compressor.is_empty() {
-            let Some(end) = word.checked_add(first) else { return fail("its length is damaged") };
-            return Ok(start(end)?.split_off(word));
-        }
-        if compressor != "vtkZLibDataCompressor" {
-            return fail(format!("compressor '{compressor}' is not supported"));
-        }
-        let Some(length) = first.checked_add(3).and_then(|n| n.checked_mul(word)) else {
-            return fail("its number of blocks is damaged");
+    fn payload(&self, data: &[u8], is_base64: bool) -> Read<Vec<u8>> {
+        let width = if of(&self.attributes, "header_type") == "UInt64" { 8 } else { 4 };
+        let header = |count: usize| -> Read<Vec<usize>> {
+            let bytes = decoded(data, count.saturating_mul(width), is_base64)?;
+            Ok(bytes.chunks(width).map(|word| self.order().bits(word).try_into().unwrap_or(usize::MAX)).collect())
         };
-        let header = start(length)?;
-        let (full, last) = (number(&header, 1), number(&header, 2));
-        let sizes: Vec<usize> = (0..first).map(|i| number(&header, 3 + i)).collect();
-        let Some(total) = sizes.iter().try_fold(0_usize, |sum, &size| sum.checked_add(size)) else {
-            return fail("its block lengths are damaged");
-        };
+        let count = header(1)?[0];
+        match of(&self.attributes, "compressor") {
+            "" => return Ok(decoded(data, count.saturating_add(width), is_base64)?.split_off(width)),
+            "vtkZLibDataCompressor" => {}
+            other => return fail(format!("compressor '{other}' is not supported")),
+        }
+        let header = header(count.saturating_add(3))?;
+        let (full, last, sizes) = (header[1], header[2], &header[3..]);
         // Encoded headers and blocks are padded separately.
-        let skipped = if is_raw { length } else { length.div_ceil(3) * 4 };
-        let blocks = decoded(data.get(skipped..).unwrap_or_default(), total, is_raw)?;
-        let (mut out, mut at) = (Vec::new(), 0);
+        let skipped = if is_base64 { letters(header.len() * width) } else { header.len() * width };
+        let total = sizes.iter().fold(0, |sum: usize, &size| sum.saturating_add(size));
+        let blocks = decoded(data.get(skipped..).unwrap_or_default(), total, is_base64)?;
+        let (mut rest, mut out) = (&blocks[..], Vec::new());
         for (i, &size) in sizes.iter().enumerate() {
-            let expected = if i + 1 == first && last > 0 { last } else { full };
-            let before = out.len();
-            let mut block = flate2::read::ZlibDecoder::new(&blocks[at..at + size]).take(expected as u64 + 1);
-            if block.read_to_end(&mut out).is_err() || out.len() - before != expected {
+            let (block, others) = rest.split_at(size);
+            let expected = if i + 1 == count && last > 0 { last } else { full };
+            let end = out.len().saturating_add(expected);
+            let mut decoder = flate2::read::ZlibDecoder::new(block).take((expected as u64).saturating_add(1));
+            if decoder.read_to_end(&mut out).is_err() || out.len() != end {
                 return fail(format!("block {i} of its compressed data is damaged"));
             }
-            at += size;
+            rest = others;
         }
         Ok(out)
     }
 
-    fn is_big_endian(&self) -> bool {
-        self.attributes.get("byte_order").is_some_and(|order| order == "BigEndian")
-    }
-
-    fn word(&self, bytes: &[u8]) -> usize {
-        let fold = |n: u64, &byte: &u8| n * 256 + u64::from(byte);
-        let n = if self.is_big_endian() { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
-        usize::try_from(n).unwrap_or(usize::MAX)
-    }
-
-    fn numbers(&self, bytes: &[u8], kind: &str) -> Read<Numbers> {
-        let width = match kind {
-            "Int8" | "UInt8" => 1,
-            "Int16" | "UInt16" => 2,
-            "Int32" | "UInt32" | "Float32" => 4,
-            "Int64" | "UInt64" | "Float64" => 8,
-            other => return fail(format!("type '{other}' is not supported")),
-        };
-        if !bytes.len().is_multiple_of(width) {
-            return fail("its length is no multiple of the size of a number");
-        }
-        let words = bytes.chunks_exact(width).map(|chunk| self.word(chunk) as u64);
-        Ok(match kind {
-            "Float64" => Numbers::Real(words.map(f64::from_bits).collect()),
-            "Float32" => Numbers::Real(words.map(|w| f64::from(f32::from_bits(w as u32))).collect()),
-            "UInt8" | "UInt16" | "UInt32" | "UInt64" => {
-                Numbers::Whole(words.map(|w| i64::try_from(w).unwrap_or(i64::MAX)).collect())
-            }
-            // Sign extension.
-            _ => Numbers::Whole(words.map(|w| ((w << (64 - 8 * width)) as i64) >> (64 - 8 * width)).collect()),
-        })
+    fn order(&self) -> Order {
+        if of(&self.attributes, "byte_order") == "BigEndian" { Order::Big } else { Order::Little }
     }
 }
 
-fn ascii(text: &[u8], is_real: bool) -> Read<Numbers> {
-    let Ok(text) = std::str::from_utf8(text) else { return fail("its text is not UTF-8") };
-    let numbers = if is_real {
-        text.split_ascii_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>().map(Numbers::Real)
-    } else {
-        text.split_ascii_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>().map(Numbers::Whole)
-    };
-    numbers.map_or_else(|| fail("a word is not a number"), Ok)
+/// Value of an attribute, empty if it is missing.
+fn of<'a>(attributes: &'a Attributes, name: &str) -> &'a str {
+    attributes.get(name).map_or("", String::as_str)
+}
+
+/// Number of letters of base64 for a number of bytes.
+fn letters(length: usize) -> usize {
+    length.div_ceil(3).saturating_mul(4)
 }
 
 /// The first bytes of raw or base64 data.
-fn decoded(data: &[u8], length: usize, is_raw: bool) -> Read<Vec<u8>> {
-    if is_raw {
-        return data.get(..length).map_or_else(|| fail("the file ends inside it"), |bytes| Ok(bytes.to_vec()));
-    }
-    let mut out = Vec::with_capacity(length.min(RESERVED));
-    for four in data.chunks(4) {
-        if out.len() >= length {
-            break;
+fn decoded(data: &[u8], length: usize, is_base64: bool) -> Read<Vec<u8>> {
+    let data = &data[..data.len().min(if is_base64 { letters(length) } else { length })];
+    let decoded = if is_base64 { BASE64.decode(data) } else { Ok(data.to_vec()) };
+    match decoded {
+        Ok(bytes) if bytes.len() < length && is_base64 => fail("its base64 text is too short"),
+        Ok(bytes) if bytes.len() < length => fail("the file ends inside it"),
+        Ok(mut bytes) => {
+            bytes.truncate(length);
+            Ok(bytes)
         }
-        let (mut bits, mut count) = (0_u32, 0);
-        for value in four.iter().map_while(|&c| base64(c)) {
-            bits = bits * 64 + value;
-            count += 1;
-        }
-        if count < 2 {
-            return fail("its base64 text is damaged");
-        }
-        bits <<= 6 * (4 - count);
-        out.extend_from_slice(&bits.to_be_bytes()[1..count]);
+        Err(_) => fail("its base64 text is damaged"),
     }
-    if out.len() < length {
-        return fail("its base64 text is too short");
-    }
-    out.truncate(length);
-    Ok(out)
-}
-
-fn base64(c: u8) -> Option<u32> {
-    let value = match c {
-        b'A'..=b'Z' => c - b'A',
-        b'a'..=b'z' => c - b'a' + 26,
-        b'0'..=b'9' => c - b'0' + 52,
-        b'+' => 62,
-        b'/' => 63,
-        _ => return None,
-    };
-    Some(u32::from(value))
-}
-
-fn attributes(tag: &str) -> HashMap<String, String> {
-    let mut found = HashMap::new();
-    let mut rest = tag;
-    while let Some((before, after)) = rest.split_once('=') {
-        let name = before.rsplit(char::is_whitespace).find(|word| !word.is_empty()).unwrap_or_default();
-        let after = after.trim_start();
-        let Some(quote) = after.chars().next().filter(|c| matches!(c, '"' | '\'')) else { break };
-        let Some((value, next)) = after[1..].split_once(quote) else { break };
-        found.insert(name.to_owned(), value.to_owned());
-        rest = next;
-    }
-    found
-}
-
-fn find(bytes: &[u8], from: usize, what: &[u8]) -> Option<usize> {
-    bytes.get(from..)?.windows(what.len()).position(|window| window == what).map(|at| from + at)
 }
 
 #[cfg(test)]
@@ -284,7 +204,7 @@ mod tests {
     use super::*;
 
     fn whole(xml: &str) -> Read<Vec<i64>> {
-        VtkFile::parse(xml.as_bytes())?.required("Cells", "a")?.whole()
+        VtkFile::parse(xml.as_bytes())?.required("Cells", "a")
     }
 
     #[test]
@@ -318,10 +238,15 @@ mod tests {
 
     #[test]
     fn attributes_have_either_quote_and_spaces() {
-        let found = attributes("DataArray Name = 'a b'\n\ttype=\"Int'32\" n='' open='no");
-        let expected = [("Name", "a b"), ("type", "Int'32"), ("n", "")];
+        let of = |tag: &str| VtkFile::parse(format!("<{tag}>").as_bytes()).map(|file| file.attributes);
+        let found = of("VTKFile Name = 'a b'\n\ttype=\"Int'32\" n='' entity='a&lt;b'").expect("attributes");
+        let expected = [("Name", "a b"), ("type", "Int'32"), ("n", ""), ("entity", "a<b")];
         assert_eq!(found, expected.map(|(name, value)| (name.to_owned(), value.to_owned())).into());
-        assert!(attributes("DataArray Name=a type='b'").is_empty());
+        for damaged in
+            ["VTKFile type=a", "VTKFile type='a' open='no", "VTKFile type='a' type='b'", "VTKFile type='&x;'"]
+        {
+            assert!(of(damaged).is_err(), "{damaged}");
+        }
     }
 
     #[test]
@@ -335,8 +260,8 @@ mod tests {
             (file.names("Cells"), file.names("VTKFile"), file.names("Empty")),
             (vec!["a"], vec!["a"; 2], vec![])
         );
-        assert!(file.array("Cells", "b").expect("no error").is_none());
-        assert!(file.array("Empty", "").expect("no error").is_none());
+        assert!(file.array::<i64>("Cells", "b").expect("no error").is_none());
+        assert!(file.array::<i64>("Empty", "").expect("no error").is_none());
     }
 
     #[test]
@@ -350,7 +275,7 @@ mod tests {
                 .into_bytes();
                 file.extend(header.to_le_bytes());
                 file.extend([1; 40]);
-                assert!(VtkFile::parse(&file).expect("tags").required("Cells", "a").is_err());
+                assert!(VtkFile::parse(&file).expect("tags").required::<i64>("Cells", "a").is_err());
             }
         }
     }
