@@ -6,6 +6,8 @@ use crate::faces::Boundary;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::space::{Bounds, Point};
+use rstar::Envelope as _;
 
 /// Checks the boundary, and compares it with the expectation of the file.
 pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
@@ -82,25 +84,20 @@ fn several_fans(faces: &[[u32; 3]], fans: Sets) -> Vec<u32> {
 
 /// Checks the genus of each component.
 fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
-    let mut vertices: Vec<(u32, u32)> =
-        boundary.faces.iter().zip(surface).flat_map(|(f, &s)| f.map(|v| (s, v))).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let mut euler = vec![0_i64; count as usize];
-    for &(s, _) in &vertices {
-        euler[s as usize] += 2;
-    }
-    // Each face has a half of three edges.
-    for &s in surface {
-        euler[s as usize] -= 1;
+    let (mut euler, mut owner) = (vec![0; count as usize], vec![0; count as usize]);
+    let mut is_new = vec![true; mesh.points.len()];
+    for (i, face) in boundary.faces.iter().enumerate() {
+        let s = surface[i] as usize;
+        // With one fan at each vertex, a vertex belongs to one surface. Each face has a half of three edges.
+        euler[s] += 2 * face.iter().filter(|&&v| std::mem::take(&mut is_new[v as usize])).count() as i64 - 1;
+        owner[s] = boundary.component[i] as usize;
     }
     // Here `euler` is twice the characteristic, 2 (2 - 2g).
-    report.figures.genus = euler.iter().map(|e| (4 - e) / 4).sum();
+    let genera: Vec<i64> = euler.iter().map(|e| (4 - e) / 4).collect();
+    report.figures.genus = genera.iter().sum();
     let Some(expected) = &mesh.expected_loops else { return };
-    let mut owner = vec![0; count as usize];
-    surface.iter().zip(&boundary.component).for_each(|(&s, &component)| owner[s as usize] = component);
     let mut found: Vec<Vec<i64>> = vec![Vec::new(); report.figures.components];
-    owner.iter().zip(&euler).for_each(|(&component, e)| found[component as usize].push((4 - e) / 4));
+    owner.iter().zip(&genera).for_each(|(&component, &genus)| found[component].push(genus));
     let mut violations: Vec<String> = Vec::new();
     for (component, genera) in found.iter().enumerate().filter(|(_, genera)| genera.len() != 1) {
         violations.push(format!("component {component} has {} boundary surfaces", genera.len()));
@@ -120,29 +117,18 @@ fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report:
 /// inside exactly one.
 fn nesting(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
     let corners = |i: usize| boundary.faces[i].map(|v| mesh.points[v as usize]);
-    let mut own: Vec<Vec<[[f64; 3]; 3]>> = vec![Vec::new(); count as usize];
+    let mut own: Vec<Vec<[Point; 3]>> = vec![Vec::new(); count as usize];
     surface.iter().enumerate().for_each(|(i, &s)| own[s as usize].push(corners(i)));
-    let boxes: Vec<[[f64; 2]; 3]> = own.iter().map(|triangles| bounds(triangles)).collect();
-    let is_in = |p: &[f64; 3], b: &[[f64; 2]; 3]| (0..3).all(|k| b[k][0] <= p[k] && p[k] <= b[k][1]);
+    let boxes: Vec<Bounds> = own.iter().map(|triangles| Bounds::from_points(triangles.as_flattened())).collect();
     let mut wrong = Vec::new();
     for (s, triangles) in own.iter().enumerate() {
         let point = triangles[0][0];
-        let others = (0..own.len()).filter(|&other| other != s && is_in(&point, &boxes[other]));
+        let others = (0..own.len()).filter(|&other| other != s && boxes[other].contains_point(&point));
         let depth: i32 = others.map(|other| winding(&point, &own[other])).sum();
-        if depth != i32::from(volume_sign(triangles) < 0) {
+        if depth != i32::from(volume_sign(&point, triangles) < 0) {
             let first = surface.iter().position(|&own| own as usize == s).unwrap_or_default();
             wrong.push(format!("surface of face {}", Ids(boundary.faces[first])));
         }
     }
     report.add(C::NoNesting, wrong);
-}
-
-fn bounds(triangles: &[[[f64; 3]; 3]]) -> [[f64; 2]; 3] {
-    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    for point in triangles.iter().flatten() {
-        for k in 0..3 {
-            bounds[k] = [bounds[k][0].min(point[k]), bounds[k][1].max(point[k])];
-        }
-    }
-    bounds
 }

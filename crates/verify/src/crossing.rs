@@ -1,24 +1,15 @@
 //! Exact intersections of triangles, and winding numbers of points.
 
 use crate::exact::{orient_2d, orient_3d};
-use crate::tree::Tree;
-
-type Point = [f64; 3];
+use crate::space::{Bounds, Point, boxes};
 
 /// Returns the pairs of triangles that intersect outside their common vertices and edges. Degenerate triangles are
 /// ignored.
 pub fn crossings(points: &[Point], faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    let boxes = faces.iter().map(|face| {
-        let [a, b, c] = face.map(|v| points[v as usize]);
-        [0, 1, 2].map(|k| [a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k])])
-    });
-    let mut found = Vec::new();
-    let tree = Tree::new(boxes.collect());
-    tree.pairs(&mut |i, j| {
-        if intersect(points, faces[i as usize], faces[j as usize]) {
-            found.push([i.min(j), i.max(j)]);
-        }
-    });
+    let tree = boxes(faces.iter().map(|face| Bounds::from_points(&face.map(|v| points[v as usize]))));
+    let pairs = tree.intersection_candidates_with_other_tree(&tree).map(|(a, b)| [a.data, b.data]);
+    let is_crossing = |&[i, j]: &[u32; 2]| i < j && intersect(points, faces[i as usize], faces[j as usize]);
+    let mut found: Vec<[u32; 2]> = pairs.filter(is_crossing).collect();
     found.sort_unstable();
     found
 }

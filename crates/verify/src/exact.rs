@@ -1,30 +1,43 @@
-//! Exact signs of determinants: a floating-point filter, then integers of any size.
+//! Exact signs of volumes and areas: a floating-point filter, then integers of any size.
 
-use num_bigint::{BigInt, Sign};
+use crate::space::{Point, minus};
+use num_bigint::BigInt;
+use num_traits::float::FloatCore as _;
 
-/// Relative error bound of a determinant of three differences: 7 roundings of 2⁻⁵³, rounded up.
-const BOUND_3: f64 = 1e-15;
-/// Relative error bound of a determinant of two differences.
-const BOUND_2: f64 = 5e-16;
+/// Relative error bound for each determinant of three differences: 9 roundings of 2⁻⁵³, rounded up.
+const BOUND: f64 = 1e-15;
 /// Bound on the absolute error of underflows, per unit of the largest factor.
 const UNDERFLOW: f64 = 1e-315;
 
 /// Returns the sign of the signed volume of a tetrahedron: positive if `a`, `b`, `c` are counterclockwise seen from `d`.
-pub fn orient_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
-    filter_3d(a, b, c, d).unwrap_or_else(|| exact_3d(a, b, c, d))
+pub fn orient_3d(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
+    volume_sign(a, &[[*b, *c, *d]])
 }
 
-fn filter_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> Option<i32> {
-    let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-    let (mut det, mut sum, mut largest) = (0.0, 0.0, 0.0_f64);
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let (plus, minus) = (v[j] * w[k], v[k] * w[j]);
-        det += u[i] * (plus - minus);
-        sum += u[i].abs() * (plus.abs() + minus.abs());
-        largest = largest.max(u[i].abs()).max(v[i].abs()).max(w[i].abs());
+/// Returns the sign of the signed area of a triangle in the plane: positive if it is counterclockwise.
+pub fn orient_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
+    let [[x, y], b, c] = [a, b, c];
+    orient_3d(&[x, y, 0.0], &[b[0], b[1], 0.0], &[c[0], c[1], 0.0], &[x, y, 1.0])
+}
+
+/// Returns the sign of the volume between a point and triangles: positive if they face away from it. For a closed surface,
+/// every point gives the same sign.
+pub fn volume_sign(origin: &Point, triangles: &[[Point; 3]]) -> i32 {
+    filter(origin, triangles).unwrap_or_else(|| exact(origin, triangles))
+}
+
+fn filter(origin: &Point, triangles: &[[Point; 3]]) -> Option<i32> {
+    let (mut volume, mut sum, mut largest) = (0.0, 0.0, 0.0_f64);
+    for t in triangles {
+        let [u, v, w] = t.map(|p| minus(p, *origin));
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let (plus, minus) = (v[j] * w[k], v[k] * w[j]);
+            volume += u[i] * (plus - minus);
+            sum += u[i].abs() * (plus.abs() + minus.abs());
+            largest = largest.max(u[i].abs()).max(v[i].abs()).max(w[i].abs());
+        }
     }
-    clear_sign(det, BOUND_3 * sum + UNDERFLOW * (1.0 + largest), sum)
+    clear_sign(volume, (BOUND * sum + UNDERFLOW * (1.0 + largest)) * triangles.len() as f64, sum)
 }
 
 /// Sign of a sum that exceeds its error bound; `None` if it does not, or if the sum of the absolute terms overflows.
@@ -33,95 +46,21 @@ fn clear_sign(value: f64, bound: f64, sum: f64) -> Option<i32> {
     (value.abs() > bound && sum < f64::MAX).then(|| value.signum() as i32)
 }
 
-fn exact_3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> i32 {
-    let numbers = Scaled::new(a.iter().chain(b).chain(c).chain(d).copied());
-    let [p, q, r, s] = [a, b, c, d].map(|p| p.map(|x| numbers.integer(x)));
-    sign(&determinant(&minus(&q, &p), &minus(&r, &p), &minus(&s, &p)))
-}
-
-/// Returns the sign of the signed area of a triangle in the plane: positive if it is counterclockwise.
-pub fn orient_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
-    filter_2d(a, b, c).unwrap_or_else(|| exact_2d(a, b, c))
-}
-
-fn filter_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Option<i32> {
-    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
-    let (plus, minus) = (u[0] * v[1], u[1] * v[0]);
-    let sum = plus.abs() + minus.abs();
-    clear_sign(plus - minus, BOUND_2 * sum + UNDERFLOW, sum)
-}
-
-fn exact_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
-    let numbers = Scaled::new(a.into_iter().chain(b).chain(c));
-    let [a, b, c] = [a, b, c].map(|p| p.map(|x| numbers.integer(x)));
-    sign(&((&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0])))
-}
-
-/// Returns the sign of the volume enclosed by triangles: positive if they face outwards.
-pub fn volume_sign(triangles: &[[[f64; 3]; 3]]) -> i32 {
-    filter_volume(triangles).unwrap_or_else(|| exact_volume(triangles))
-}
-
-fn filter_volume(triangles: &[[[f64; 3]; 3]]) -> Option<i32> {
-    let origin = triangles.first()?[0];
-    let (mut volume, mut sum) = (0.0, 0.0);
-    for t in triangles {
-        let [u, v, w] = t.map(|p| [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]);
-        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-            volume += u[i] * (v[j] * w[k] - v[k] * w[j]);
-            sum += u[i].abs() * (v[j] * w[k]).abs().max((v[k] * w[j]).abs());
-        }
-    }
-    // Far above the error of any sum of fewer than 2³² products.
-    clear_sign(volume, (1e-5 * sum).max(1e-200), sum)
-}
-
-fn exact_volume(triangles: &[[[f64; 3]; 3]]) -> i32 {
-    let numbers = Scaled::new(triangles.iter().flatten().flatten().copied());
-    let exact = triangles.iter().map(|t| t.map(|p| p.map(|x| numbers.integer(x))));
-    sign(&exact.map(|[u, v, w]| determinant(&u, &v, &w)).sum())
-}
-
-/// Common power of two that makes integers of floating-point numbers.
-struct Scaled {
-    exponent: i32,
-}
-
-impl Scaled {
-    fn new(numbers: impl Iterator<Item = f64>) -> Self {
-        Self { exponent: numbers.filter(|&x| x != 0.0).map(|x| parts(x).1).min().unwrap_or(0) }
-    }
-
-    fn integer(&self, x: f64) -> BigInt {
-        let (mantissa, exponent) = parts(x);
-        if mantissa == 0 { BigInt::ZERO } else { BigInt::from(mantissa) << (exponent - self.exponent) as usize }
-    }
-}
-
-/// Integer and power of two whose product is 2¹⁰⁷⁵ times a finite number.
-fn parts(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let (raw, fraction) = (((bits >> 52) & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let mantissa = if raw == 0 { fraction } else { fraction + (1 << 52) };
-    (if x.is_sign_negative() { -mantissa } else { mantissa }, raw.max(1))
-}
-
-fn minus(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
-    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
-}
-
-fn determinant(u: &[BigInt; 3], v: &[BigInt; 3], w: &[BigInt; 3]) -> BigInt {
-    &u[0] * (&v[1] * &w[2] - &v[2] * &w[1])
-        + &u[1] * (&v[2] * &w[0] - &v[0] * &w[2])
-        + &u[2] * (&v[0] * &w[1] - &v[1] * &w[0])
-}
-
-fn sign(x: &BigInt) -> i32 {
-    match x.sign() {
-        Sign::Plus => 1,
-        Sign::Minus => -1,
-        Sign::NoSign => 0,
-    }
+fn exact(origin: &Point, triangles: &[[Point; 3]]) -> i32 {
+    // A common power of two makes integers of all numbers.
+    let numbers = triangles.as_flattened().as_flattened().iter().chain(origin);
+    let least = numbers.filter(|&&x| x != 0.0).map(|x| x.integer_decode().1).min().unwrap_or(0);
+    let integer = |x: f64| {
+        let (mantissa, exponent, sign) = x.integer_decode();
+        BigInt::from(mantissa) * sign << (exponent - least).max(0)
+    };
+    let from = origin.map(integer);
+    let volume = triangles.iter().map(|t| {
+        let [u, v, w] = t.map(|[x, y, z]| [integer(x) - &from[0], integer(y) - &from[1], integer(z) - &from[2]]);
+        let minor = |j: usize, k: usize| &v[j] * &w[k] - &v[k] * &w[j];
+        &u[0] * minor(1, 2) + &u[1] * minor(2, 0) + &u[2] * minor(0, 1)
+    });
+    volume.sum::<BigInt>().cmp(&BigInt::ZERO) as i32
 }
 
 #[cfg(test)]
@@ -146,6 +85,12 @@ mod tests {
         [[a, c, b], [a, b, d], [b, c, d], [c, a, d]]
     }
 
+    /// Sign of an area from integers.
+    fn exact_2d([a, b, c]: [[f64; 2]; 3]) -> i32 {
+        let [a, b, c] = [a, b, c].map(|[x, y]| [x, y, 0.0]);
+        exact(&a, &[[b, c, [a[0], a[1], 1.0]]])
+    }
+
     /// Points in a plane, moved by some units in the last place, at all scales.
     #[test]
     fn the_filter_never_differs_from_integers() {
@@ -165,20 +110,16 @@ mod tests {
             for x in &mut d {
                 *x = f64::from_bits(x.to_bits().wrapping_add(random(5) * u64::from(x.is_normal())));
             }
-            assert_eq!(orient_3d(&a, &b, &c, &d), exact_3d(&a, &b, &c, &d), "{round}: {a:?} {b:?} {c:?} {d:?}");
+            assert_eq!(orient_3d(&a, &b, &c, &d), exact(&a, &[[b, c, d]]), "{round}: {a:?} {b:?} {c:?} {d:?}");
             let sides = sides(a, b, c, d);
-            assert_eq!(volume_sign(&sides), exact_volume(&sides), "{round}: {a:?} {b:?} {c:?} {d:?}");
+            assert_eq!(volume_sign(&a, &sides), exact(&[0.0; 3], &sides), "{round}: {a:?} {b:?} {c:?} {d:?}");
             let e = [0, 1].map(|k| a[k] + u * (b[k] - a[k]));
             let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
-            assert_eq!(orient_2d(a, b, e), exact_2d(a, b, e), "{round}: {a:?} {b:?} {e:?}");
-            zeros += usize::from(exact_2d(a, b, e) == 0);
+            assert_eq!(orient_2d(a, b, e), exact_2d([a, b, e]), "{round}: {a:?} {b:?} {e:?}");
+            zeros += usize::from(exact_2d([a, b, e]) == 0);
             let beside = e.map(|x| x * (1.0 + 3.0 * f64::EPSILON));
             let thirds = [a, b, beside].map(|p| p.map(|x| x / 3.0));
-            assert_eq!(
-                orient_2d(thirds[0], thirds[1], thirds[2]),
-                exact_2d(thirds[0], thirds[1], thirds[2]),
-                "{round}: {thirds:?}"
-            );
+            assert_eq!(orient_2d(thirds[0], thirds[1], thirds[2]), exact_2d(thirds), "{round}: {thirds:?}");
         }
         assert!((10..19_000).contains(&zeros), "{zeros}");
     }
@@ -201,12 +142,12 @@ mod tests {
         for (scale, shift) in [(1e-60, 0.0), (1e-3, 0.0), (1.0, 1e7), (1e60, 0.0)] {
             let p = |x: f64, y: f64, z: f64| [x, y, z].map(|x| x * scale + shift);
             let (a, b, c, d) = (p(-1., -2., -1.), p(3., 1., 2.), p(1., 2., 1.), p(0., 1., 4.));
-            assert_eq!((filter_3d(&a, &b, &c, &d), filter_3d(&a, &c, &b, &d)), (Some(1), Some(-1)), "{scale}");
-            let flat = |p: [f64; 3]| [p[0], p[2]];
-            assert_eq!(filter_2d(flat(a), flat(b), flat(d)), Some(1), "{scale}");
-            assert_eq!(filter_2d(flat(a), flat(d), flat(b)), Some(-1), "{scale}");
-            assert_eq!(filter_volume(&sides(a, b, c, d)), Some(1), "{scale}");
-            assert_eq!(filter_volume(&sides(a, c, b, d)), Some(-1), "{scale}");
+            assert_eq!((filter(&a, &[[b, c, d]]), filter(&a, &[[c, b, d]])), (Some(1), Some(-1)), "{scale}");
+            let [e, f, g] = [a, b, d].map(|p| [p[0], p[2], 0.0]);
+            let up = [e[0], e[1], 1.0];
+            assert_eq!((filter(&e, &[[f, g, up]]), filter(&e, &[[g, f, up]])), (Some(1), Some(-1)), "{scale}");
+            assert_eq!(filter(&a, &sides(a, b, c, d)), Some(1), "{scale}");
+            assert_eq!(filter(&a, &sides(a, c, b, d)), Some(-1), "{scale}");
         }
         assert_eq!((clear_sign(-2.0, 1.0, 2.0), clear_sign(1.0, 1.0, 2.0)), (Some(-1), None));
         assert_eq!((clear_sign(2.0, 1.0, f64::MAX), clear_sign(f64::NAN, 1.0, 2.0)), (None, None));
@@ -225,7 +166,7 @@ mod tests {
             for round in 0..2000 {
                 let mut point = |exponent: i32| [0; 3].map(|_| f64::from(small()) * power(exponent));
                 let (b, c, d) = (point(large), point(tiny), point(tiny));
-                let expected = exact_3d(&[0.0; 3], &b, &c, &d);
+                let expected = exact(&[0.0; 3], &[[b, c, d]]);
                 assert_eq!(orient_3d(&[0.0; 3], &b, &c, &d), expected, "{round}: {b:?} {c:?} {d:?}");
             }
         }
@@ -238,8 +179,8 @@ mod tests {
             [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t: [usize; 3]| t.map(|i| p[i]))
         };
         for h in [1.0, 1e-12, 1e-300] {
-            assert_eq!((volume_sign(&thin(h)), volume_sign(&thin(-h))), (1, -1), "{h}");
+            assert_eq!((volume_sign(&[0.0; 3], &thin(h)), volume_sign(&[0.0; 3], &thin(-h))), (1, -1), "{h}");
         }
-        assert_eq!((volume_sign(&thin(0.0)), volume_sign(&[])), (0, 0));
+        assert_eq!((volume_sign(&[0.0; 3], &thin(0.0)), volume_sign(&[0.0; 3], &[])), (0, 0));
     }
 }

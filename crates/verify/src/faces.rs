@@ -4,6 +4,7 @@ use crate::exact::orient_3d;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::space::{cross, dot, minus};
 
 /// Faces of a positive tetrahedron, oriented outwards.
 pub const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -54,8 +55,8 @@ fn cells(mesh: &Mesh, report: &mut Report) {
     report.add(C::PositiveTets, (0..mesh.tets.len()).filter(|&i| sign(&mesh.tets[i]) <= 0));
     let volume = |t: &[u32; 4]| {
         let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);
-        let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-        u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])
+        let [u, v, w] = [b, c, d].map(|p| minus(p, a));
+        dot(u, cross(v, w))
     };
     report.figures.volume = mesh.tets.iter().map(volume).sum::<f64>() / 6.0;
 }

@@ -5,6 +5,7 @@ use crate::faces::{Boundary, is_odd, key};
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::space::{Point, cross, dot, minus};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 
@@ -16,8 +17,6 @@ const FLATNESS: f64 = 1e-9;
 const ROUNDING: [f64; 2] = [6e-8, 1e-15];
 /// Beginnings of names of patches that consist of flat discs.
 const FLAT: [&str; 3] = ["inlet", "outlet", "missing"];
-
-type Vector = [f64; 3];
 
 /// Checks the labels of a mesh that has them.
 pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
@@ -135,9 +134,9 @@ struct Shape {
 
 impl Shape {
     /// Shape of triangles, with all lengths in a unit; without a normal, that of their mean.
-    fn of(points: &[Vector], triangles: &[[u32; 3]], center: Vector, normal: Option<Vector>, unit: f64) -> Self {
+    fn of(points: &[Point], triangles: &[[u32; 3]], center: Point, normal: Option<Point>, unit: f64) -> Self {
         let corners = |t: &[u32; 3]| t.map(|v| minus(points[v as usize], center).map(|x| x / unit));
-        let areas: Vec<Vector> = triangles.iter().map(|t| area(corners(t))).collect();
+        let areas: Vec<Point> = triangles.iter().map(|t| area(corners(t))).collect();
         let sum = areas.iter().fold([0.0; 3], |sum, a| [0, 1, 2].map(|k| sum[k] + a[k]));
         let normal = normal.unwrap_or(sum);
         let length = dot(normal, normal).sqrt();
@@ -155,7 +154,7 @@ impl Shape {
         let vertices = || triangles.iter().flatten().map(|&v| points[v as usize]);
         let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
         let rounding = ROUNDING[usize::from(!is_rounded)];
-        let shift = |p: Vector| rounding * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
+        let shift = |p: Point| rounding * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
         Self {
             unit,
             area: total,
@@ -178,18 +177,9 @@ impl Shape {
     }
 }
 
-/// Vector along the normal of a triangle, as long as its area.
-fn area([a, b, c]: [Vector; 3]) -> Vector {
-    let (u, v) = (minus(b, a), minus(c, a));
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]].map(|x| x / 2.0)
-}
-
-fn minus(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// Point along the normal of a triangle, as long as its area.
+fn area([a, b, c]: [Point; 3]) -> Point {
+    cross(minus(b, a), minus(c, a)).map(|x| x / 2.0)
 }
 
 /// Parts of triangles that are connected by edges.

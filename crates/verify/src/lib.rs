@@ -25,9 +25,9 @@ mod numbers;
 mod regions;
 mod report;
 mod sets;
+mod space;
 mod surface;
 mod tetgen;
-mod tree;
 mod vtu;
 mod xml;
 

@@ -5,29 +5,27 @@ use crate::labels::WALL;
 use crate::mesh::{Cap, Mesh, Read, fail};
 use crate::numbers::{DOUBLE, Numbers};
 use crate::report::{Condition, Report};
-use crate::tree::Tree;
+use crate::space::{Bounds, Point, boxes, dot, minus};
 use crate::xml::VtkFile;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Conical piece of a vessel.
 pub struct Cone {
-    ends: [[f64; 3]; 2],
+    ends: [Point; 2],
     radii: [f64; 2],
 }
 
 impl Cone {
     /// Distance of a point from the surface, negative inside, and radius of the vessel beside it. The surface is that of
     /// all balls along the axis.
-    fn distance(&self, p: &[f64; 3]) -> [f64; 2] {
+    fn distance(&self, p: &Point) -> [f64; 2] {
         let [a, b] = &self.ends;
-        let axis = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-        let from = [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
-        let dot = |u: &[f64; 3], v: &[f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        let length = dot(&axis, &axis).sqrt();
-        let along = if length > 0.0 { dot(&axis, &from) / length } else { 0.0 };
-        let across = (dot(&from, &from) - along * along).max(0.0).sqrt();
-        let slope = if length > 0.0 { (self.radii[1] - self.radii[0]) / length } else { 0.0 };
+        let (axis, from) = (minus(*b, *a), minus(*p, *a));
+        let length = dot(axis, axis).sqrt();
+        let per_length = |x: f64| if length > 0.0 { x / length } else { 0.0 };
+        let (along, slope) = (per_length(dot(axis, from)), per_length(self.radii[1] - self.radii[0]));
+        let across = (dot(from, from) - along * along).max(0.0).sqrt();
         // The nearest ball is not beside the point if the vessel tapers.
         let shift = across * slope / (1.0 - slope * slope).max(1e-300).sqrt();
         let at = if slope.abs() < 1.0 {
@@ -41,10 +39,14 @@ impl Cone {
         [across.hypot(along - at) - radius, radius]
     }
 
-    fn bounds(&self, tolerance: f64) -> [[f64; 2]; 3] {
+    fn bounds(&self, tolerance: f64) -> Bounds {
         let reach = self.radii[0].max(self.radii[1]) * (1.0 + tolerance);
-        let [a, b] = &self.ends;
-        [0, 1, 2].map(|k| [a[k].min(b[k]) - reach, a[k].max(b[k]) + reach])
+        let [low, high] = [-reach, reach].map(|by| self.ends.map(|p| p.map(|x| x + by)));
+        Bounds::from_points(low.iter().chain(&high))
+    }
+
+    fn is_finite(&self) -> bool {
+        self.ends.as_flattened().iter().chain(&self.radii).all(|x| x.is_finite())
     }
 }
 
@@ -55,6 +57,9 @@ pub fn read(path: &Path, bytes: &[u8]) -> Read<Vec<Cone>> {
         "vtp" => vtp(bytes),
         other => fail(format!("networks '.{other}' are not supported; use .swc or .vtp")),
     }?;
+    if !cones.iter().all(Cone::is_finite) {
+        return fail("the network has a position or a radius that is not finite");
+    }
     if cones.is_empty() { fail("the network has no vessels") } else { Ok(cones) }
 }
 
@@ -104,36 +109,33 @@ fn vtp(bytes: &[u8]) -> Read<Vec<Cone>> {
 
 /// Adds the condition that wall vertices are within a tolerance of the nearest vessel's surface, in radii of the vessel.
 pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
-    let walls = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label == WALL).map(|(face, _)| face);
-    let caps = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label != WALL).map(|(face, _)| face);
-    let mut on_caps: HashSet<u32> = caps.flatten().copied().collect();
+    let of = |is_meant: fn(&i64) -> bool| {
+        let own = mesh.triangles.iter().zip(&mesh.labels).filter(move |(_, label)| is_meant(label));
+        own.flat_map(|(face, _)| face).copied()
+    };
+    let (mut wall, mut on_caps): (Vec<u32>, HashSet<u32>) =
+        (of(|&l| l == WALL).collect(), of(|&l| l != WALL).collect());
     // Without labels, every boundary vertex belongs to the wall, except those in the plane of a cap and near it.
     if mesh.triangles.is_empty() {
-        let is_on = |p: &[f64; 3], cap: &Cap| {
-            let from = [p[0] - cap.center[0], p[1] - cap.center[1], p[2] - cap.center[2]];
-            let height: f64 = (0..3).map(|k| from[k] * cap.normal[k]).sum();
-            let square: f64 = from.iter().map(|x| x * x).sum();
-            height.abs() <= 1e-6 * cap.radius && square <= 2.0 * cap.radius * cap.radius
+        let is_on = |p: &Point, cap: &Cap| {
+            let from = minus(*p, cap.center);
+            let height = dot(from, cap.normal).abs();
+            height <= 1e-6 * cap.radius && dot(from, from) <= 2.0 * cap.radius * cap.radius
         };
-        let vertices = boundary.faces.as_flattened().iter();
-        on_caps.extend(vertices.filter(|&&v| mesh.caps.iter().any(|cap| is_on(&mesh.points[v as usize], cap))));
+        wall = boundary.faces.as_flattened().to_vec();
+        on_caps.extend(wall.iter().filter(|&&v| mesh.caps.iter().any(|cap| is_on(&mesh.points[v as usize], cap))));
     }
-    let faces: Vec<&[u32; 3]> =
-        if mesh.triangles.is_empty() { boundary.faces.iter().collect() } else { walls.collect() };
-    let mut vertices: Vec<u32> = faces.into_iter().flatten().copied().collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let tree = Tree::new(cones.iter().map(|cone| cone.bounds(tolerance)).collect());
+    wall.sort_unstable();
+    wall.dedup();
+    let tree = boxes(cones.iter().map(|cone| cone.bounds(tolerance)));
     let is_far = |&v: &u32| {
         let Some(point) = mesh.points.get(v as usize) else { return true };
-        let mut nearest = [f64::INFINITY, 1.0];
-        tree.around(point, &mut |i| {
-            let other = cones[i as usize].distance(point);
-            nearest = if other[0] < nearest[0] { other } else { nearest };
-        });
-        nearest[0].abs() > tolerance * nearest[1]
+        let near = tree.locate_in_envelope_intersecting(Bounds::from_point(*point));
+        let distances = near.map(|own| cones[own.data as usize].distance(point)).filter(|found| !found[0].is_nan());
+        let nearest = distances.min_by(|a, b| a[0].total_cmp(&b[0]));
+        nearest.is_none_or(|[distance, radius]| distance.abs() > tolerance * radius)
     };
-    report.add(Condition::WallDistance, vertices.into_iter().filter(|v| !on_caps.contains(v)).filter(is_far));
+    report.add(Condition::WallDistance, wall.into_iter().filter(|v| !on_caps.contains(v)).filter(is_far));
 }
 
 #[cfg(test)]
@@ -191,7 +193,7 @@ mod tests {
     #[test]
     fn bounds_reach_beyond_the_balls_by_the_tolerance() {
         let cone = Cone { ends: [[1., 5., 3.], [4., 2., 3.]], radii: [1.0, 2.0] };
-        assert_eq!(cone.bounds(0.5), [[-2., 7.], [-1., 8.], [0., 6.]]);
+        assert_eq!(cone.bounds(0.5), Bounds::from_corners([-2., -1., 0.], [7., 8., 6.]));
     }
 
     /// Number of points far from the vessels.
@@ -249,6 +251,10 @@ mod tests {
         assert_eq!(cones("n.swc", text), Ok(vec![[20., 0.2, 10., 0.1], [30., 0.3, 20., 0.2]]));
         assert_eq!(cones("n.swc", "1 3 10 0 0 0.1 -1\n"), Err("the network has no vessels".into()));
         assert_eq!(cones("n.swc", "1 3 10 0 0 0.1\n"), Err("bad row '1 3 10 0 0 0.1'".into()));
+        for number in ["nan", "inf"] {
+            let text = text.replace("0.3", number);
+            assert_eq!(cones("n.swc", &text), Err("the network has a position or a radius that is not finite".into()));
+        }
         assert_eq!(cones("n.vtk", ""), Err("networks '.vtk' are not supported; use .swc or .vtp".into()));
     }
 
