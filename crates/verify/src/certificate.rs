@@ -2,7 +2,8 @@
 //! describes the format.
 
 use crate::mesh::{Read, fail};
-use crate::report::{Condition, Figures, Report};
+use crate::report::{Condition, Outcome, Report};
+use hmac::{Hmac, Mac as _};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ pub fn hash(files: &[PathBuf]) -> Read<String> {
     for file in files {
         sha.update(std::fs::read(file)?);
     }
-    Ok(hexadecimal(&sha.finalize()))
+    Ok(format!("{:x}", sha.finalize()))
 }
 
 /// Text of the certificate of a mesh. `input` is the network or surface from which it was made. With a key the seal
@@ -37,16 +38,11 @@ pub fn write(report: &Report, mesh: &Path, input: Option<&Path>, key: Option<&[u
         Ok(json!({"file": name, "sha256": hash(files)?}))
     };
     let input = input.map(|input| entry(&[input.to_owned()])).transpose()?;
-    let conditions = report.outcomes.iter().map(|o| json!({"name": o.condition.name(), "violations": o.count}));
-    let f = &report.figures;
+    let condition = |o: &Outcome| json!({"name": o.condition.name(), "violations": o.count});
     let document = json!({
         "format": FORMAT, "program": concat!("anastomesh-verify ", env!("CARGO_PKG_VERSION")), "options": null,
         "input": input, "mesh": entry(&crate::files_of(mesh))?, "valid": report.is_valid(),
-        "figures": {
-            "points": f.points, "tets": f.tets, "boundary_faces": f.boundary_faces, "components": f.components,
-            "genus": f.genus, "volume": f.volume,
-        },
-        "conditions": conditions.collect::<Vec<_>>(),
+        "figures": report.figures.to_json(), "conditions": report.outcomes.iter().map(condition).collect::<Value>(),
     });
     let text = format!("{document:#}");
     let body = format!("{},\n  ", text.trim_end_matches('}').trim_end());
@@ -82,49 +78,33 @@ pub fn check(text: &str, mesh: &Path, input: Option<&Path>, key: Option<&[u8]>, 
 }
 
 /// Claims that differ from the report. Conditions that only one of both programs checks are skipped.
-fn claims(certificate: &Value, report: &Report) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for outcome in &report.outcomes {
-        let name = outcome.condition.name();
-        let listed = certificate["conditions"].as_array().into_iter().flatten().find(|claim| claim["name"] == name);
-        if listed.is_some_and(|claim| (claim["violations"].as_u64() == Some(0)) != (outcome.count == 0)) {
-            wrong.push(name.to_owned());
-        }
-    }
+fn claims(certificate: &Value, report: &Report) -> Vec<&'static str> {
+    let claimed = certificate["conditions"].as_array().map_or(&[][..], Vec::as_slice);
+    let differs = |outcome: &&Outcome| {
+        let claim = claimed.iter().find(|claim| claim["name"] == outcome.condition.name());
+        claim.is_some_and(|claim| (claim["violations"] == 0) != (outcome.count == 0))
+    };
+    let mut wrong: Vec<&'static str> =
+        report.outcomes.iter().filter(differs).map(|outcome| outcome.condition.name()).collect();
     if certificate["valid"] != report.is_valid() {
-        wrong.push("valid".into());
+        wrong.push("valid");
     }
-    let Figures { points, tets, boundary_faces, components, genus, volume } = report.figures;
-    let exact = [
-        ("points", points as i64),
-        ("tets", tets as i64),
-        ("boundary_faces", boundary_faces as i64),
-        ("components", components as i64),
-    ];
-    let figures = &certificate["figures"];
+    let (figures, own) = (&certificate["figures"], report.figures.to_json());
     // Programs without an expectation do not state the genus.
-    if !figures["genus"].is_null() && figures["genus"] != genus {
-        wrong.push("genus".into());
-    }
-    wrong.extend(exact.iter().filter(|(name, value)| figures[name] != *value).map(|(name, _)| (*name).to_owned()));
-    let claimed = figures["volume"].as_f64().unwrap_or(f64::NAN);
-    if (claimed - volume).abs() > VOLUME * volume.abs() || claimed.is_nan() {
-        wrong.push("volume".into());
+    let is_equal = |name: &&str| figures[name] == own[name] || (*name == "genus" && figures[name].is_null());
+    wrong.extend(["genus", "points", "tets", "boundary_faces", "components"].iter().filter(|name| !is_equal(name)));
+    let volume = report.figures.volume;
+    if figures["volume"].as_f64().is_none_or(|claimed| (claimed - volume).abs() > VOLUME * volume.abs()) {
+        wrong.push("volume");
     }
     wrong
 }
 
 /// SHA-256 of the bytes before the seal, or HMAC-SHA256 (RFC 2104) with a key.
 fn seal(body: &[u8], key: Option<&[u8]>) -> String {
-    let sha = |parts: [&[u8]; 2]| Sha256::new().chain_update(parts[0]).chain_update(parts[1]).finalize();
-    let Some(key) = key else { return hexadecimal(&sha([body, &[]])) };
-    let short = if key.len() > 64 { sha([key, &[]]).to_vec() } else { key.to_vec() };
-    let padded = |pad: u8| -> Vec<u8> { (0..64).map(|i| short.get(i).copied().unwrap_or(0) ^ pad).collect() };
-    hexadecimal(&sha([&padded(0x5c), &sha([&padded(0x36), body])]))
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    let Some(key) = key else { return format!("{:x}", Sha256::digest(body)) };
+    let mac = Hmac::<Sha256>::new_from_slice(key).expect("keys of HMAC have any length");
+    format!("{:x}", mac.chain_update(body).finalize().into_bytes())
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::sets::Sets;
 use crate::space::{cross, dot, minus};
 
 /// Faces of a positive tetrahedron, oriented outwards.
-pub const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Faces of exactly one tetrahedron.
 pub struct Boundary {
@@ -39,22 +39,19 @@ pub fn check(mesh: &Mesh, report: &mut Report) -> Option<Boundary> {
 }
 
 fn cells(mesh: &Mesh, report: &mut Report) {
-    let mut sorted: Vec<([u32; 4], u32)> = mesh.tets.iter().copied().zip(0..).collect();
-    for (t, _) in &mut sorted {
-        t.sort_unstable();
-    }
+    let mut sorted = mesh.tets.clone();
+    sorted.iter_mut().for_each(|t| t.sort_unstable());
     let is_repeated = |t: &[u32; 4]| t.windows(2).any(|pair| pair[0] == pair[1]);
-    report.add(C::NoRepeatedVertex, sorted.iter().filter(|(t, _)| is_repeated(t)).map(|(_, i)| i));
-    sorted.sort_unstable();
-    let pairs = sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-    report.add(C::NoDuplicateTets, pairs.map(|pair| Ids([pair[0].1, pair[1].1])));
-    let sign = |t: &[u32; 4]| {
-        let [a, b, c, d] = t.map(|v| &mesh.points[v as usize]);
-        orient_3d(a, b, c, d)
+    report.add(C::NoRepeatedVertex, (0..sorted.len()).filter(|&i| is_repeated(&sorted[i])));
+    report.add(C::NoDuplicateTets, equal_pairs(sorted));
+    let corners = |t: &[u32; 4]| t.map(|v| mesh.points[v as usize]);
+    let is_positive = |t: &[u32; 4]| {
+        let [a, b, c, d] = corners(t);
+        orient_3d(&a, &b, &c, &d) > 0
     };
-    report.add(C::PositiveTets, (0..mesh.tets.len()).filter(|&i| sign(&mesh.tets[i]) <= 0));
+    report.add(C::PositiveTets, (0..mesh.tets.len()).filter(|&i| !is_positive(&mesh.tets[i])));
     let volume = |t: &[u32; 4]| {
-        let [a, b, c, d] = t.map(|v| mesh.points[v as usize]);
+        let [a, b, c, d] = corners(t);
         let [u, v, w] = [b, c, d].map(|p| minus(p, a));
         dot(u, cross(v, w))
     };
@@ -62,15 +59,20 @@ fn cells(mesh: &Mesh, report: &mut Report) {
 }
 
 fn points(mesh: &Mesh, report: &mut Report) {
-    let mut used = vec![false; mesh.points.len()];
-    mesh.tets.iter().flatten().for_each(|&v| used[v as usize] = true);
     // Adding zero makes both zeros equal.
-    let mut places: Vec<([u64; 3], u32)> =
-        mesh.points.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).zip(0..).collect();
-    places.sort_unstable();
-    let equal = places.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-    report.add(C::NoDuplicatePoints, equal.map(|pair| Ids([pair[0].1, pair[1].1])));
-    report.add(C::NoUnusedPoints, used.iter().enumerate().filter(|(_, used)| !**used).map(|(i, _)| i));
+    let places = mesh.points.iter().map(|p| p.map(|x| (x + 0.0).to_bits()));
+    report.add(C::NoDuplicatePoints, equal_pairs(places.collect()));
+    let mut used = vec![false; mesh.points.len()];
+    mesh.tets.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    report.add(C::NoUnusedPoints, (0..used.len()).filter(|&i| !used[i]));
+}
+
+/// Pairs of numbers of equal values.
+fn equal_pairs<T: Ord + Copy>(values: Vec<T>) -> Vec<Ids<2>> {
+    let mut numbered: Vec<(T, u32)> = values.into_iter().zip(0..).collect();
+    numbered.sort_unstable();
+    let pairs = numbered.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    pairs.map(|pair| Ids([pair[0].1, pair[1].1])).collect()
 }
 
 /// Vertices in ascending order.
@@ -84,19 +86,53 @@ pub fn is_odd(face: [u32; 3]) -> bool {
     (face[0] > face[1]) ^ (face[0] > face[2]) ^ (face[1] > face[2])
 }
 
+/// Side of a tetrahedron: its sorted vertices, and four times the number of the tetrahedron plus that of the side.
+pub type Side = ([u32; 3], u32);
+
+/// Sides of all tetrahedra, sorted.
+pub struct Sides<'a> {
+    tets: &'a [[u32; 4]],
+    sorted: Vec<Side>,
+}
+
+impl<'a> Sides<'a> {
+    pub fn new(tets: &'a [[u32; 4]]) -> Self {
+        let mut sides = Self { tets, sorted: Vec::new() };
+        sides.sorted = (0..4 * tets.len() as u32).map(|handle| (key(sides.face(handle)), handle)).collect();
+        sides.sorted.sort_unstable();
+        sides
+    }
+
+    /// Vertices of a side, oriented outwards.
+    pub fn face(&self, handle: u32) -> [u32; 3] {
+        SIDES[handle as usize % 4].map(|i| self.tets[handle as usize / 4][i])
+    }
+
+    /// Sides with the same vertices, in ascending order.
+    pub fn groups(&self) -> impl Iterator<Item = &[Side]> {
+        self.sorted.chunk_by(|a, b| a.0 == b.0)
+    }
+
+    /// Sides with the vertices of a triangle.
+    pub fn of(&self, triangle: [u32; 3]) -> &[Side] {
+        let key = key(triangle);
+        let from = &self.sorted[self.sorted.partition_point(|side| side.0 < key)..];
+        &from[..from.partition_point(|side| side.0 == key)]
+    }
+}
+
 fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
-    let face = |handle: u32| SIDES[handle as usize % 4].map(|i| mesh.tets[handle as usize / 4][i]);
-    let mut sorted: Vec<([u32; 3], u32)> = (0..4 * mesh.tets.len() as u32).map(|h| (key(face(h)), h)).collect();
-    sorted.sort_unstable();
+    let sides = Sides::new(&mesh.tets);
     let mut labelled: Vec<[u32; 3]> = mesh.triangles.iter().map(|&t| key(t)).collect();
     labelled.sort_unstable();
     let mut sets = Sets::new(mesh.tets.len());
     let (mut crowded, mut one_sided, mut outer, mut labelled_inside) = (vec![], vec![], vec![], vec![]);
-    for group in sorted.chunk_by(|a, b| a.0 == b.0) {
+    for group in sides.groups() {
         group.windows(2).for_each(|pair| sets.join(pair[0].1 / 4, pair[1].1 / 4));
+        let odd = |side: &Side| is_odd(sides.face(side.1));
         match group {
             [(_, only)] => outer.push(*only),
-            [(_, first), (_, second)] if is_odd(face(*first)) == is_odd(face(*second)) => one_sided.push(group[0].0),
+            [first, second] if odd(first) == odd(second) => one_sided.push(first.0),
             [_, _] => {}
             _ => crowded.push(group[0].0),
         }
@@ -107,11 +143,10 @@ fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
     report.add(C::FacesSharedByTwo, crowded.into_iter().map(Ids));
     report.add(C::OppositeSides, one_sided.into_iter().map(Ids));
     let (component, count) = sets.numbered();
-    report.figures.components = count as usize;
     outer.sort_unstable();
-    report.figures.boundary_faces = outer.len();
+    (report.figures.components, report.figures.boundary_faces) = (count as usize, outer.len());
     Boundary {
-        faces: outer.iter().map(|&handle| face(handle)).collect(),
+        faces: outer.iter().map(|&handle| sides.face(handle)).collect(),
         component: outer.iter().map(|&handle| component[handle as usize / 4]).collect(),
         labelled_inside,
     }

@@ -1,118 +1,91 @@
 //! Program `anastomesh-verify`: one line per mesh, `valid` or the violated conditions.
 
-use anastomesh_verify::{Demands, Read, ReadError, certificate, read_mesh, read_network, read_surface, verify};
+use anastomesh_verify::{Demands, Read, ReadError, Report, certificate, read_mesh, read_network, read_surface, verify};
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-const HELP: &str = "\
-Check tetrahedral meshes, independently of the mesher
-
-Usage: anastomesh-verify [OPTIONS] MESH...
-
-Arguments:
-  MESH...                   .vtu, .msh (Gmsh 4.1 or 2.2 text) or .ele (TetGen)
-
-Options:
-  --list FILE               Check the meshes that a file names, one a line
-  --surface FILE            Require each triangle of an .off, .stl or .ply as a boundary face
-  --network FILE            Require the wall near the vessels of an .swc or .vtp
-  --tolerance R             Maximum distance of the wall from the vessels, in radii [default: 0.5]
-  --certificate FILE        Compare a certificate with the mesh
-  --input FILE              Network or surface that the certificate names
-  --key FILE                Key of the certificate's seal
-  --write-certificate FILE  Write a certificate
-  --json                    Print a JSON object per mesh
-  -h, --help                Print help
-  -V, --version             Print version
-
-Exit codes: 0 valid, 1 not valid, 2 bad arguments, 3 unreadable file
-";
-
-#[derive(Default)]
+/// Check tetrahedral meshes, independently of the mesher
+#[derive(Parser)]
+#[command(version, args_override_self = true)]
+#[command(after_help = "Exit codes: 0 valid, 1 not valid, 2 bad arguments, 3 unreadable file")]
 struct Args {
+    /// .vtu, .msh (Gmsh 4.1 or 2.2 text) or .ele (TetGen)
+    #[arg(value_name = "MESH", required_unless_present = "list")]
     meshes: Vec<PathBuf>,
+    /// Check the meshes that a file names, one a line
+    #[arg(long, value_name = "FILE", value_parser = read_list)]
+    list: Option<List>,
+    /// Require each triangle of an .off, .stl or .ply as a boundary face
+    #[arg(long, value_name = "FILE")]
     surface: Option<PathBuf>,
+    /// Require the wall near the vessels of an .swc or .vtp
+    #[arg(long, value_name = "FILE")]
     network: Option<PathBuf>,
-    tolerance: Option<f64>,
+    /// Maximum distance of the wall from the vessels, in radii
+    #[arg(long, value_name = "R", default_value = "0.5", value_parser = positive)]
+    tolerance: f64,
+    /// Compare a certificate with the mesh
+    #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    write_certificate: Option<PathBuf>,
+    /// Network or surface that the certificate names
+    #[arg(long, value_name = "FILE")]
     input: Option<PathBuf>,
+    /// Key of the certificate's seal
+    #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
+    /// Write a certificate
+    #[arg(long, value_name = "FILE")]
+    write_certificate: Option<PathBuf>,
+    /// Print a JSON object per mesh
+    #[arg(long)]
     json: bool,
 }
 
-fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    if words.iter().any(|word| ["-h", "--help"].contains(&word.as_str())) {
-        print!("{HELP}");
-        return ExitCode::SUCCESS;
-    }
-    if words.iter().any(|word| ["-V", "--version"].contains(&word.as_str())) {
-        println!("anastomesh-verify {}", env!("CARGO_PKG_VERSION"));
-        return ExitCode::SUCCESS;
-    }
-    let args = match parse(words) {
-        Ok(args) => args,
-        Err(problem) => {
-            eprintln!("error: {problem}; --help lists the options");
-            return ExitCode::from(2);
-        }
-    };
-    match run(&args) {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(3)
-        }
-    }
+#[derive(Clone)]
+struct List(Vec<PathBuf>);
+
+fn read_list(file: &str) -> std::io::Result<List> {
+    let text = std::fs::read_to_string(file)?;
+    Ok(List(text.lines().filter(|line| !line.is_empty()).map(PathBuf::from).collect()))
 }
 
-fn parse(words: Vec<String>) -> Result<Args, String> {
-    let (mut args, mut words) = (Args::default(), words.into_iter());
-    while let Some(word) = words.next() {
-        let mut value = || words.next().map(PathBuf::from).ok_or_else(|| format!("{word} needs a value"));
-        match word.as_str() {
-            "--json" => args.json = true,
-            "--surface" => args.surface = Some(value()?),
-            "--network" => args.network = Some(value()?),
-            "--certificate" => args.certificate = Some(value()?),
-            "--write-certificate" => args.write_certificate = Some(value()?),
-            "--input" => args.input = Some(value()?),
-            "--key" => args.key = Some(value()?),
-            "--tolerance" => {
-                let number = value()?.to_str().and_then(|text| text.parse().ok()).filter(|r: &f64| *r > 0.0);
-                args.tolerance = Some(number.ok_or("--tolerance needs a positive number")?);
-            }
-            "--list" => {
-                let list = value()?;
-                let text = std::fs::read_to_string(&list).map_err(|e| format!("{}: {e}", list.display()))?;
-                args.meshes.extend(text.lines().filter(|line| !line.is_empty()).map(PathBuf::from));
-            }
-            option if option.starts_with('-') => return Err(format!("unknown option {option}")),
-            _ => args.meshes.push(word.into()),
-        }
-    }
+fn positive(text: &str) -> Result<f64, &'static str> {
+    text.parse().ok().filter(|&number| number > 0.0).ok_or("a positive number is needed")
+}
+
+fn main() -> ExitCode {
+    let mut args = Args::parse();
+    args.meshes.extend(args.list.take().into_iter().flat_map(|list| list.0));
     let is_single = args.certificate.is_some() || args.write_certificate.is_some();
     match args.meshes.len() {
-        0 => Err("no mesh".into()),
-        2.. if is_single => Err("a certificate belongs to one mesh".into()),
-        _ => Ok(args),
+        0 => Args::command().error(ErrorKind::MissingRequiredArgument, "no mesh").exit(),
+        2.. if is_single => {
+            Args::command().error(ErrorKind::TooManyValues, "a certificate belongs to one mesh").exit();
+        }
+        _ => {}
     }
+    run(&args).map_or_else(
+        |error| {
+            eprintln!("error: {error}");
+            ExitCode::from(3)
+        },
+        ExitCode::from,
+    )
 }
 
 /// Checks all meshes; the exit code is the largest of all.
 fn run(args: &Args) -> Read<u8> {
+    let network = args.network.as_deref().map(read_network).transpose()?;
     let demands = Demands {
         surface: args.surface.as_deref().map(read_surface).transpose()?,
-        network: match &args.network {
-            Some(path) => Some((read_network(path)?, args.tolerance.unwrap_or(0.5))),
-            None => None,
-        },
+        network: network.map(|cones| (cones, args.tolerance)),
     };
     let mut code = 0;
     for mesh in &args.meshes {
-        let (line, own) = one(args, &demands, mesh);
+        let (line, own) = line(mesh, report(args, &demands, mesh), args.json);
         code = code.max(own);
         // The reader of the output has closed it.
         if writeln!(std::io::stdout(), "{line}").is_err() {
@@ -123,30 +96,31 @@ fn run(args: &Args) -> Read<u8> {
 }
 
 /// Line and exit code of a mesh.
-fn one(args: &Args, demands: &Demands, path: &Path) -> (String, u8) {
-    let shown = path.display();
-    match report(args, demands, path) {
-        Err(error) if args.json => (serde_json::json!({"file": path, "error": error.to_string()}).to_string(), 3),
+fn line(path: &Path, report: Read<Report>, is_json: bool) -> (String, u8) {
+    let shown = path.to_string_lossy();
+    match report {
+        Err(error) if is_json => (serde_json::json!({"file": shown, "error": error.to_string()}).to_string(), 3),
         Err(error) => (format!("{shown}: unreadable: {error}"), 3),
         Ok(report) => {
-            let code = u8::from(!report.is_valid());
             let mut json = report.to_json();
-            json["file"] = path.to_string_lossy().into();
-            (if args.json { json.to_string() } else { format!("{shown}: {report}") }, code)
+            json["file"] = shown.as_ref().into();
+            let line = if is_json { json.to_string() } else { format!("{shown}: {report}") };
+            (line, u8::from(!report.is_valid()))
         }
     }
 }
 
-fn report(args: &Args, demands: &Demands, path: &Path) -> Read<anastomesh_verify::Report> {
+fn report(args: &Args, demands: &Demands, path: &Path) -> Read<Report> {
     let mut report = verify(&read_mesh(path)?, demands);
-    let named = |file: &PathBuf, e| ReadError::of_file(file, &e);
+    let named = |file: &Path, e| ReadError::of_file(file, &e);
     let key = args.key.as_ref().map(|key| std::fs::read(key).map_err(|e| named(key, e))).transpose()?;
+    let (input, key) = (args.input.as_deref(), key.as_deref());
     if let Some(file) = &args.certificate {
         let text = std::fs::read_to_string(file).map_err(|e| named(file, e))?;
-        certificate::check(&text, path, args.input.as_deref(), key.as_deref(), &mut report)?;
+        certificate::check(&text, path, input, key, &mut report)?;
     }
     if let Some(file) = &args.write_certificate {
-        let text = certificate::write(&report, path, args.input.as_deref(), key.as_deref())?;
+        let text = certificate::write(&report, path, input, key)?;
         std::fs::write(file, text).map_err(|e| named(file, e))?;
     }
     Ok(report)

@@ -35,6 +35,11 @@ impl Mesh {
     pub(crate) fn region_of(&self, tet: usize) -> i64 {
         self.tet_regions.get(tet).copied().unwrap_or(0)
     }
+
+    /// Name of a patch; empty if unknown.
+    pub(crate) fn patch_name(&self, label: i64) -> &str {
+        self.patches.iter().find(|(id, _)| *id == label).map_or("", |(_, name)| name)
+    }
 }
 
 /// Flat disc at a terminal of the network.

@@ -1,7 +1,7 @@
 //! Conditions of a valid mesh, and the violations of a file.
 
 use serde_json::{Value, json};
-use std::fmt::{self, Display, Write as _};
+use std::fmt::{self, Display};
 
 /// Maximum violations of a condition whose ids are listed.
 const LISTED: usize = 3;
@@ -122,6 +122,16 @@ pub struct Figures {
     pub volume: f64,
 }
 
+impl Figures {
+    /// JSON object, also of certificates.
+    pub(crate) fn to_json(self) -> Value {
+        json!({
+            "points": self.points, "tets": self.tets, "boundary_faces": self.boundary_faces,
+            "components": self.components, "genus": self.genus, "volume": self.volume,
+        })
+    }
+}
+
 /// Result of all conditions that could be checked.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
@@ -144,27 +154,23 @@ impl Report {
 
     /// Adds a condition with its violations; true if none exist.
     pub(crate) fn add(&mut self, condition: Condition, violations: impl IntoIterator<Item = impl Display>) -> bool {
-        let mut outcome = Outcome { condition, count: 0, first: Vec::new() };
-        for violation in violations {
-            outcome.count += 1;
-            if outcome.count <= LISTED {
-                outcome.first.push(violation.to_string());
-            }
-        }
-        self.outcomes.push(outcome);
-        self.outcomes.last().is_some_and(|outcome| outcome.count == 0)
+        let mut violations = violations.into_iter();
+        let first: Vec<String> = violations.by_ref().take(LISTED).map(|violation| violation.to_string()).collect();
+        let count = first.len() + violations.count();
+        self.outcomes.push(Outcome { condition, count, first });
+        count == 0
     }
 
     /// Adds the outcomes of a region.
     pub(crate) fn merge(&mut self, part: Self, region: &str) {
-        for outcome in part.outcomes {
-            let first = outcome.first.iter().map(|violation| format!("region {region}: {violation}"));
+        for mut outcome in part.outcomes {
+            outcome.first.iter_mut().for_each(|violation| *violation = format!("region {region}: {violation}"));
             if let Some(known) = self.outcomes.iter_mut().find(|known| known.condition == outcome.condition) {
-                known.first.extend(first.take(LISTED.saturating_sub(known.first.len())));
+                known.first.append(&mut outcome.first);
+                known.first.truncate(LISTED);
                 known.count += outcome.count;
             } else {
-                let Outcome { condition, count, .. } = outcome;
-                self.outcomes.push(Outcome { condition, count, first: first.collect() });
+                self.outcomes.push(outcome);
             }
         }
     }
@@ -183,15 +189,11 @@ impl Report {
 
     /// JSON object with all conditions.
     pub fn to_json(&self) -> Value {
-        let f = &self.figures;
-        let conditions = self.outcomes.iter().map(
-            |outcome| json!({"name": outcome.condition.name(), "violations": outcome.count, "first": outcome.first}),
-        );
-        json!({
-            "valid": self.is_valid(), "points": f.points, "tets": f.tets, "boundary_faces": f.boundary_faces,
-            "components": f.components, "genus": f.genus, "volume": f.volume,
-            "conditions": conditions.collect::<Vec<_>>(),
-        })
+        let condition = |o: &Outcome| json!({"name": o.condition.name(), "violations": o.count, "first": o.first});
+        let mut json = self.figures.to_json();
+        json["valid"] = self.is_valid().into();
+        json["conditions"] = self.outcomes.iter().map(condition).collect();
+        json
     }
 }
 
@@ -199,22 +201,20 @@ impl Report {
 impl Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         if self.is_valid() {
-            let f = &self.figures;
-            let conditions = self.outcomes.len();
-            return write!(
-                out,
-                "valid: tetrahedra {}, boundary faces {}, components {}, genus {}, conditions {conditions}",
-                f.tets, f.boundary_faces, f.components, f.genus
-            );
+            let Figures { tets, boundary_faces, components, genus, .. } = self.figures;
+            write!(out, "valid: tetrahedra {tets}, boundary faces {boundary_faces}, components {components}, ")?;
+            return write!(out, "genus {genus}, conditions {}", self.outcomes.len());
         }
-        let mut text = String::from("NOT valid");
-        for (i, outcome) in self.violated().enumerate() {
-            let (start, first) = (if i == 0 { ": " } else { "; " }, outcome.first.join(", "));
-            let more = if outcome.count > outcome.first.len() { ", …" } else { "" };
-            let (name, violation) = (outcome.condition.name(), outcome.condition.violation());
-            write!(text, "{start}{name}: {violation}: {} ({first}{more})", outcome.count)?;
-        }
-        out.write_str(&text)
+        let violated: Vec<String> = self.violated().map(ToString::to_string).collect();
+        write!(out, "NOT valid: {}", violated.join("; "))
+    }
+}
+
+impl Display for Outcome {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { condition, count, first } = self;
+        let more = if *count > first.len() { ", …" } else { "" };
+        write!(out, "{}: {}: {count} ({}{more})", condition.name(), condition.violation(), first.join(", "))
     }
 }
 

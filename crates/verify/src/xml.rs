@@ -129,11 +129,11 @@ impl<'a> VtkFile<'a> {
             "binary" => self.payload(array.text.trim_ascii(), true)?,
             other => return fail(format!("unknown format '{other}'")),
         };
-        let words = bytes.chunks_exact(kind.width());
+        let (words, order) = (bytes.chunks_exact(kind.width()), self.order());
         if !words.remainder().is_empty() {
             return fail("its length is no multiple of the size of a number");
         }
-        Ok(words.filter_map(|word| T::of(kind, self.order().bits(word))).collect())
+        Ok(words.filter_map(|word| T::of(kind, order.bits(word))).collect())
     }
 
     /// Bytes of an array, from its header on.

@@ -44,17 +44,24 @@ fn a_line_per_mesh() {
 fn bad_arguments_have_a_reason() {
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path();
+    write(dir, "one", "b.vtu\n");
+    write(dir, "empty", "\n");
+    let number = "for '--tolerance <R>': a positive number is needed";
     for (words, reason) in [
-        (&["--colour", "m.vtu"][..], "unknown option --colour"),
-        (&["m.vtu", "--tolerance", "0"], "--tolerance needs a positive number"),
-        (&["m.vtu", "--tolerance", "much"], "--tolerance needs a positive number"),
-        (&["m.vtu", "--tolerance"], "--tolerance needs a value"),
+        (&["--colour", "m.vtu"][..], "unexpected argument '--colour' found"),
+        (&["m.vtu", "--tolerance", "0"], &format!("invalid value '0' {number}")),
+        (&["m.vtu", "--tolerance", "much"], &format!("invalid value 'much' {number}")),
+        (&["m.vtu", "--tolerance"], "a value is required for '--tolerance <R>' but none was supplied"),
         (&["a.vtu", "b.vtu", "--certificate", "c.json"], "a certificate belongs to one mesh"),
         (&["a.vtu", "b.vtu", "--write-certificate", "c.json"], "a certificate belongs to one mesh"),
-        (&["--json"], "no mesh"),
-        (&["--list", "none"], "none: No such file or directory (os error 2)"),
+        (&["a.vtu", "--list", "one", "--certificate", "c.json"], "a certificate belongs to one mesh"),
+        (&["--json"], "the following required arguments were not provided:\n  <MESH>..."),
+        (&["--list", "empty"], "no mesh"),
+        (&["--list", "none"], "invalid value 'none' for '--list <FILE>': No such file or directory (os error 2)"),
     ] {
-        assert_eq!(run(dir, words), (format!("error: {reason}; --help lists the options\n"), Some(2)));
+        let (text, code) = run(dir, words);
+        assert_eq!((text.starts_with(&format!("error: {reason}\n")), code), (true, Some(2)), "{text}");
+        assert!(text.contains("'--help'"), "{text}");
     }
     let (text, code) = run(dir, &["m.vtu", "--help"]);
     assert!(text.starts_with("Check tetrahedral meshes, ") && text.ends_with("3 unreadable file\n") && code == Some(0));
