@@ -1,8 +1,8 @@
 //! Certificates: a summary of a mesh with hashes, written beside it and compared with it later. `docs/certificate.md`
 //! describes the format.
 
-use crate::mesh::{Read, fail};
 use crate::report::{Condition, Outcome, Report};
+use anyhow::{Context as _, Result, ensure};
 use hmac::{Hmac, Mac as _};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -19,7 +19,7 @@ const VOLUME: f64 = 1e-6;
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn hash(files: &[PathBuf]) -> Read<String> {
+pub fn hash(files: &[PathBuf]) -> Result<String> {
     let mut sha = Sha256::new();
     for file in files {
         sha.update(std::fs::read(file)?);
@@ -32,8 +32,8 @@ pub fn hash(files: &[PathBuf]) -> Read<String> {
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn write(report: &Report, mesh: &Path, input: Option<&Path>, key: Option<&[u8]>) -> Read<String> {
-    let entry = |files: &[PathBuf]| -> Read<Value> {
+pub fn write(report: &Report, mesh: &Path, input: Option<&Path>, key: Option<&[u8]>) -> Result<String> {
+    let entry = |files: &[PathBuf]| -> Result<Value> {
         let name = files[0].file_name().map(|name| name.to_string_lossy().into_owned());
         Ok(json!({"file": name, "sha256": hash(files)?}))
     };
@@ -54,11 +54,9 @@ pub fn write(report: &Report, mesh: &Path, input: Option<&Path>, key: Option<&[u
 ///
 /// # Errors
 /// Text that is not a certificate, or a file that cannot be read.
-pub fn check(text: &str, mesh: &Path, input: Option<&Path>, key: Option<&[u8]>, report: &mut Report) -> Read<()> {
-    let Ok(certificate) = serde_json::from_str::<Value>(text) else { return fail("the certificate is not JSON") };
-    if certificate["format"] != FORMAT {
-        return fail(format!("the certificate does not have the format '{FORMAT}'"));
-    }
+pub fn check(text: &str, mesh: &Path, input: Option<&Path>, key: Option<&[u8]>, report: &mut Report) -> Result<()> {
+    let certificate: Value = serde_json::from_str(text).ok().context("the certificate is not JSON")?;
+    ensure!(certificate["format"] == FORMAT, "the certificate does not have the format '{FORMAT}'");
     let body = text.rfind(SEAL).map_or("", |at| &text[..at]);
     let is_sealed = certificate["seal"] == seal(body.as_bytes(), key);
     let mut differences = Vec::new();

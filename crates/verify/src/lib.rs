@@ -31,11 +31,12 @@ mod tetgen;
 mod vtu;
 mod xml;
 
-pub use mesh::{Cap, Mesh, Read, ReadError};
+pub use mesh::{Cap, Mesh};
 pub use network::Cone;
 pub use report::{Condition, Figures, Outcome, Report};
 pub use surface::Soup;
 
+use anyhow::{Context as _, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 
 /// Maximum number of tetrahedra and of points.
@@ -89,17 +90,15 @@ fn verify_whole(mesh: &Mesh, demands: &Demands) -> Report {
 ///
 /// # Errors
 /// A file that is missing, damaged, or has cells other than tetrahedra and triangles.
-pub fn read_mesh(path: &Path) -> Read<Mesh> {
+pub fn read_mesh(path: &Path) -> Result<Mesh> {
     let mesh = match extension(path) {
         "vtu" => vtu::read(&std::fs::read(path)?),
         "msh" | "msh2" => msh::read(&std::fs::read(path)?),
         "ele" => tetgen::read(path),
-        other => mesh::fail(format!("meshes '.{other}' are not supported; use .vtu, .msh or .ele")),
+        other => bail!("meshes '.{other}' are not supported; use .vtu, .msh or .ele"),
     }?;
     // Numbers of faces and corners have 32 bits.
-    if mesh.tets.len().max(mesh.points.len()) > MAX_COUNT {
-        return mesh::fail(format!("more than {MAX_COUNT} tetrahedra or points"));
-    }
+    ensure!(mesh.tets.len().max(mesh.points.len()) <= MAX_COUNT, "more than {MAX_COUNT} tetrahedra or points");
     Ok(mesh)
 }
 
@@ -107,7 +106,7 @@ pub fn read_mesh(path: &Path) -> Read<Mesh> {
 ///
 /// # Errors
 /// A file that is missing, damaged, or has faces other than triangles.
-pub fn read_surface(path: &Path) -> Read<Soup> {
+pub fn read_surface(path: &Path) -> Result<Soup> {
     read_named(path, surface::read)
 }
 
@@ -115,14 +114,14 @@ pub fn read_surface(path: &Path) -> Read<Soup> {
 ///
 /// # Errors
 /// A file that is missing, damaged or has no vessels.
-pub fn read_network(path: &Path) -> Read<Vec<Cone>> {
+pub fn read_network(path: &Path) -> Result<Vec<Cone>> {
     read_named(path, network::read)
 }
 
 /// Result of a reader, with the path in its error.
-fn read_named<T>(path: &Path, reader: fn(&Path, &[u8]) -> Read<T>) -> Read<T> {
-    let bytes = std::fs::read(path).map_err(ReadError::from);
-    bytes.and_then(|bytes| reader(path, &bytes)).map_err(|e| ReadError(format!("{}: {e}", path.display())))
+fn read_named<T>(path: &Path, reader: fn(&Path, &[u8]) -> Result<T>) -> Result<T> {
+    let named = || path.display().to_string();
+    reader(path, &std::fs::read(path).with_context(named)?).with_context(named)
 }
 
 /// Returns the files that make a mesh: the file itself, and those beside it in TetGen's format.

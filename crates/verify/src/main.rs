@@ -1,6 +1,7 @@
 //! Program `anastomesh-verify`: one line per mesh, `valid` or the violated conditions.
 
-use anastomesh_verify::{Demands, Read, ReadError, Report, certificate, read_mesh, read_network, read_surface, verify};
+use anastomesh_verify::{Demands, Report, certificate, read_mesh, read_network, read_surface, verify};
+use anyhow::{Context as _, Result};
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser};
 use std::io::Write as _;
@@ -52,7 +53,7 @@ fn read_list(file: &str) -> std::io::Result<List> {
     Ok(List(text.lines().filter(|line| !line.is_empty()).map(PathBuf::from).collect()))
 }
 
-fn positive(text: &str) -> Result<f64, &'static str> {
+fn positive(text: &str) -> std::result::Result<f64, &'static str> {
     text.parse().ok().filter(|&number| number > 0.0).ok_or("a positive number is needed")
 }
 
@@ -69,7 +70,7 @@ fn main() -> ExitCode {
     }
     run(&args).map_or_else(
         |error| {
-            eprintln!("error: {error}");
+            eprintln!("error: {error:#}");
             ExitCode::from(3)
         },
         ExitCode::from,
@@ -77,7 +78,7 @@ fn main() -> ExitCode {
 }
 
 /// Checks all meshes; the exit code is the largest of all.
-fn run(args: &Args) -> Read<u8> {
+fn run(args: &Args) -> Result<u8> {
     let network = args.network.as_deref().map(read_network).transpose()?;
     let demands = Demands {
         surface: args.surface.as_deref().map(read_surface).transpose()?,
@@ -96,11 +97,11 @@ fn run(args: &Args) -> Read<u8> {
 }
 
 /// Line and exit code of a mesh.
-fn line(path: &Path, report: Read<Report>, is_json: bool) -> (String, u8) {
+fn line(path: &Path, report: Result<Report>, is_json: bool) -> (String, u8) {
     let shown = path.to_string_lossy();
     match report {
-        Err(error) if is_json => (serde_json::json!({"file": shown, "error": error.to_string()}).to_string(), 3),
-        Err(error) => (format!("{shown}: unreadable: {error}"), 3),
+        Err(error) if is_json => (serde_json::json!({"file": shown, "error": format!("{error:#}")}).to_string(), 3),
+        Err(error) => (format!("{shown}: unreadable: {error:#}"), 3),
         Ok(report) => {
             let mut json = report.to_json();
             json["file"] = shown.as_ref().into();
@@ -110,18 +111,17 @@ fn line(path: &Path, report: Read<Report>, is_json: bool) -> (String, u8) {
     }
 }
 
-fn report(args: &Args, demands: &Demands, path: &Path) -> Read<Report> {
+fn report(args: &Args, demands: &Demands, path: &Path) -> Result<Report> {
     let mut report = verify(&read_mesh(path)?, demands);
-    let named = |file: &Path, e| ReadError::of_file(file, &e);
-    let key = args.key.as_ref().map(|key| std::fs::read(key).map_err(|e| named(key, e))).transpose()?;
-    let (input, key) = (args.input.as_deref(), key.as_deref());
+    let read = |file: &PathBuf| std::fs::read(file).with_context(|| file.display().to_string());
+    let (input, key) = (args.input.as_deref(), args.key.as_ref().map(read).transpose()?);
     if let Some(file) = &args.certificate {
-        let text = std::fs::read_to_string(file).map_err(|e| named(file, e))?;
-        certificate::check(&text, path, input, key, &mut report)?;
+        let text = String::from_utf8(read(file)?).with_context(|| file.display().to_string())?;
+        certificate::check(&text, path, input, key.as_deref(), &mut report)?;
     }
     if let Some(file) = &args.write_certificate {
-        let text = certificate::write(&report, path, input, key)?;
-        std::fs::write(file, text).map_err(|e| named(file, e))?;
+        let text = certificate::write(&report, path, input, key.as_deref())?;
+        std::fs::write(file, text).with_context(|| file.display().to_string())?;
     }
     Ok(report)
 }

@@ -1,8 +1,5 @@
 //! Mesh as read from a file, before any check.
 
-use std::fmt;
-use std::path::Path;
-
 /// Tetrahedra with labelled triangles, as in the file. Vertices may be out of range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -55,39 +52,6 @@ pub struct Cap {
     pub normal: [f64; 3],
     /// Radius of the vessel.
     pub radius: f64,
-}
-
-/// Reason why a file cannot be read.
-#[derive(Debug)]
-pub struct ReadError(pub(crate) String);
-
-impl ReadError {
-    /// Error of the operating system for a file.
-    pub fn of_file(path: &Path, error: &std::io::Error) -> Self {
-        Self(format!("{}: {error}", path.display()))
-    }
-}
-
-impl From<std::io::Error> for ReadError {
-    fn from(error: std::io::Error) -> Self {
-        Self(error.to_string())
-    }
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for ReadError {}
-
-/// Result of a reader.
-pub type Read<T> = Result<T, ReadError>;
-
-/// Error with this reason.
-pub(crate) fn fail<T>(reason: impl Into<String>) -> Read<T> {
-    Err(ReadError(reason.into()))
 }
 
 /// Vertex index of a file; indices that no mesh can have become the largest number.

@@ -1,7 +1,8 @@
 //! Reader of Gmsh's MSH files: 4.1 in text or binary, 2.2 in text.
 
-use crate::mesh::{Cap, Mesh, Read, ReadError, fail, index};
+use crate::mesh::{Cap, Mesh, index};
 use crate::numbers::{DOUBLE, INT, LONG, Numbers, Order};
+use anyhow::{Context as _, Result, bail, ensure};
 use bstr::ByteSlice as _;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -14,8 +15,8 @@ const POINT: i64 = 15;
 const LENGTHS: [(i64, i64); 4] = [(POINT, 1), (LINE, 2), (TRIANGLE, 3), (TETRAHEDRON, 4)];
 
 /// Reads a mesh.
-pub fn read(bytes: &[u8]) -> Read<Mesh> {
-    let Some(head) = section(bytes, "MeshFormat") else { return fail("no section $MeshFormat") };
+pub fn read(bytes: &[u8]) -> Result<Mesh> {
+    let head = section(bytes, "MeshFormat").context("no section $MeshFormat")?;
     let head = head.lines().next().unwrap_or_default().to_str_lossy();
     let mut words = head.split_ascii_whitespace();
     let (version, is_binary) = (words.next().unwrap_or_default(), words.next() == Some("1"));
@@ -33,9 +34,7 @@ pub fn read(bytes: &[u8]) -> Read<Mesh> {
             numbers(bytes, "Nodes", order, |nodes| parts.add_nodes_2(nodes))?;
             parts.add_elements_2(text(bytes, "Elements")?)?;
         }
-        other => {
-            return fail(format!("MSH {}{} is not supported", other, if is_binary { " binary" } else { "" }));
-        }
+        other => bail!("MSH {other}{} is not supported", if is_binary { " binary" } else { "" }),
     }
     Ok(parts.mesh)
 }
@@ -47,23 +46,22 @@ fn section<'a>(bytes: &'a [u8], name: &str) -> Option<&'a [u8]> {
     rest.split_once_str(&format!("$End{name}")).map(|(body, _)| body)
 }
 
-fn text<'a>(bytes: &'a [u8], name: &str) -> Read<&'a str> {
+fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str> {
     let body = section(bytes, name).unwrap_or_default();
-    body.to_str().or_else(|_| fail(format!("section ${name} is not UTF-8")))
+    body.to_str().ok().with_context(|| format!("section ${name} is not UTF-8"))
 }
 
 /// Result of a reader of numbers for a section, which may be missing.
-fn numbers<T>(bytes: &[u8], name: &str, order: Order, read: impl FnOnce(Numbers) -> Read<T>) -> Read<T> {
+fn numbers<T>(bytes: &[u8], name: &str, order: Order, read: impl FnOnce(Numbers) -> Result<T>) -> Result<T> {
     let numbers = Numbers { rest: section(bytes, name).unwrap_or_default(), order };
-    read(numbers).map_err(|e| ReadError(format!("section ${name}: {e}")))
+    read(numbers).with_context(|| format!("section ${name}"))
 }
 
-fn names(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
+fn names(bytes: &[u8], mesh: &mut Mesh) -> Result<()> {
     for line in text(bytes, "PhysicalNames")?.lines().skip(1) {
         let mut numbers = Numbers::text(line);
-        let Ok([dimension, id]) = numbers.array::<i64, 2>(LONG) else {
-            return fail(format!("bad line '{line}' of $PhysicalNames"));
-        };
+        let head = numbers.array::<i64, 2>(LONG).ok();
+        let [dimension, id] = head.with_context(|| format!("bad line '{line}' of $PhysicalNames"))?;
         if dimension == 2 {
             let name = numbers.rest.to_str_lossy();
             mesh.patches.push((id, name.trim().trim_matches('"').to_owned()));
@@ -73,12 +71,12 @@ fn names(bytes: &[u8], mesh: &mut Mesh) -> Read<()> {
 }
 
 /// Section of `anastomesh` with the expectation and the caps.
-fn notes(bytes: &[u8], Parts { mesh, regions, .. }: &mut Parts) -> Read<()> {
+fn notes(bytes: &[u8], Parts { mesh, regions, .. }: &mut Parts) -> Result<()> {
     let json = text(bytes, "Anastomesh")?;
     if json.trim().is_empty() {
         return Ok(());
     }
-    let Ok(notes) = serde_json::from_str::<Value>(json) else { return fail("section $Anastomesh is not JSON") };
+    let notes: Value = serde_json::from_str(json).ok().context("section $Anastomesh is not JSON")?;
     let list = |name: &str| notes[name].as_array().map(|list| list.iter().filter_map(Value::as_i64).collect());
     (mesh.expected_loops, mesh.expected_terminals) = (list("loops"), list("terminals"));
     let pairs = notes["groups"].as_array().into_iter().flatten();
@@ -111,10 +109,9 @@ struct Parts {
 }
 
 impl Parts {
-    fn add_node(&mut self, number: i64, point: [f64; 3]) -> Read<()> {
-        if self.numbers.insert(number, index(self.mesh.points.len() as i64)).is_some() {
-            return fail(format!("node {number} is listed twice"));
-        }
+    fn add_node(&mut self, number: i64, point: [f64; 3]) -> Result<()> {
+        let known = self.numbers.insert(number, index(self.mesh.points.len() as i64));
+        ensure!(known.is_none(), "node {number} is listed twice");
         self.mesh.points.push(point);
         Ok(())
     }
@@ -138,7 +135,7 @@ impl Parts {
         true
     }
 
-    fn add_nodes_4(&mut self, mut nodes: Numbers) -> Read<()> {
+    fn add_nodes_4(&mut self, mut nodes: Numbers) -> Result<()> {
         let [blocks, ..] = nodes.array::<i64, 4>(LONG)?;
         for _ in 0..blocks {
             let [dimension, _, parametric] = nodes.array::<i64, 3>(INT)?;
@@ -152,13 +149,12 @@ impl Parts {
         Ok(())
     }
 
-    fn add_elements_4(&mut self, mut elements: Numbers, groups: &HashMap<(i64, i64), i64>) -> Read<()> {
+    fn add_elements_4(&mut self, mut elements: Numbers, groups: &HashMap<(i64, i64), i64>) -> Result<()> {
         let [blocks, ..] = elements.array::<i64, 4>(LONG)?;
         for _ in 0..blocks {
             let [dimension, tag, kind] = elements.array(INT)?;
-            let Some((_, length)) = LENGTHS.iter().find(|(known, _)| *known == kind) else {
-                return fail(format!("elements of type {kind} are not supported"));
-            };
+            let length = LENGTHS.iter().find(|(known, _)| *known == kind);
+            let (_, length) = length.with_context(|| format!("elements of type {kind} are not supported"))?;
             let label = groups.get(&(dimension, tag)).copied().unwrap_or(0);
             for _ in 0..elements.next(LONG)? {
                 let numbers = elements.list(LONG, 1 + length)?;
@@ -168,7 +164,7 @@ impl Parts {
         Ok(())
     }
 
-    fn add_nodes_2(&mut self, mut nodes: Numbers) -> Read<()> {
+    fn add_nodes_2(&mut self, mut nodes: Numbers) -> Result<()> {
         for _ in 0..nodes.next(LONG)? {
             let (number, point) = (nodes.next(LONG)?, nodes.array(DOUBLE)?);
             self.add_node(number, point)?;
@@ -176,7 +172,7 @@ impl Parts {
         Ok(())
     }
 
-    fn add_elements_2(&mut self, elements: &str) -> Read<()> {
+    fn add_elements_2(&mut self, elements: &str) -> Result<()> {
         for line in elements.lines().skip(1) {
             let numbers: Option<Vec<i64>> = line.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
             // Number, kind, number of tags, tags and nodes. The first tag is the physical group.
@@ -187,16 +183,14 @@ impl Parts {
                     .is_some_and(|(tags, nodes)| self.add_element(kind, tags.first().copied().unwrap_or(0), nodes)),
                 _ => false,
             };
-            if !is_added {
-                return fail(format!("element '{line}' is damaged or not supported"));
-            }
+            ensure!(is_added, "element '{line}' is damaged or not supported");
         }
         Ok(())
     }
 }
 
 /// Physical group of each entity by its dimension and tag.
-fn groups(mut entities: Numbers) -> Read<HashMap<(i64, i64), i64>> {
+fn groups(mut entities: Numbers) -> Result<HashMap<(i64, i64), i64>> {
     let mut groups = HashMap::new();
     if entities.rest.is_empty() {
         return Ok(groups);

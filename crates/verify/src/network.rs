@@ -2,11 +2,12 @@
 
 use crate::faces::Boundary;
 use crate::labels::WALL;
-use crate::mesh::{Cap, Mesh, Read, fail};
+use crate::mesh::{Cap, Mesh};
 use crate::numbers::{DOUBLE, Numbers};
 use crate::report::{Condition, Report};
 use crate::space::{Bounds, Point, boxes, dot, minus};
 use crate::xml::VtkFile;
+use anyhow::{Context as _, Result, bail, ensure};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -16,7 +17,14 @@ pub struct Cone {
     radii: [f64; 2],
 }
 
+/// Position and radius of a node.
+type Node = (Point, f64);
+
 impl Cone {
+    fn between((p, r): Node, (q, s): Node) -> Self {
+        Self { ends: [p, q], radii: [r, s] }
+    }
+
     /// Distance of a point from the surface, negative inside, and radius of the vessel beside it. The surface is that of
     /// all balls along the axis.
     fn distance(&self, p: &Point) -> [f64; 2] {
@@ -51,58 +59,49 @@ impl Cone {
 }
 
 /// Reads a network; the extension selects the format.
-pub fn read(path: &Path, bytes: &[u8]) -> Read<Vec<Cone>> {
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Cone>> {
     let cones = match path.extension().and_then(|e| e.to_str()).unwrap_or_default() {
         "swc" => swc(&String::from_utf8_lossy(bytes)),
         "vtp" => vtp(bytes),
-        other => fail(format!("networks '.{other}' are not supported; use .swc or .vtp")),
+        other => bail!("networks '.{other}' are not supported; use .swc or .vtp"),
     }?;
-    if !cones.iter().all(Cone::is_finite) {
-        return fail("the network has a position or a radius that is not finite");
-    }
-    if cones.is_empty() { fail("the network has no vessels") } else { Ok(cones) }
+    ensure!(!cones.is_empty(), "the network has no vessels");
+    ensure!(cones.iter().all(Cone::is_finite), "the network has a position or a radius that is not finite");
+    Ok(cones)
 }
 
-fn swc(text: &str) -> Read<Vec<Cone>> {
-    let mut nodes: HashMap<i64, ([f64; 3], f64)> = HashMap::new();
+fn swc(text: &str) -> Result<Vec<Cone>> {
+    let mut nodes: HashMap<i64, Node> = HashMap::new();
     let mut links = Vec::new();
     for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
-        let row = Numbers::text(line).array(DOUBLE);
-        let Ok([id, _, x, y, z, radius, parent]) = row else { return fail(format!("bad row '{line}'")) };
+        let row = Numbers::text(line).array(DOUBLE).ok().with_context(|| format!("bad row '{line}'"))?;
+        let [id, _, x, y, z, radius, parent] = row;
         nodes.insert(id as i64, ([x, y, z], radius));
         links.push([id as i64, parent as i64]);
     }
-    let cone = |[a, b]: [i64; 2]| {
-        let ((p, r), (q, s)) = (nodes.get(&a)?, nodes.get(&b)?);
-        Some(Cone { ends: [*p, *q], radii: [*r, *s] })
-    };
+    let cone = |[a, b]: [i64; 2]| Some(Cone::between(*nodes.get(&a)?, *nodes.get(&b)?));
     Ok(links.into_iter().filter_map(cone).collect())
 }
 
-fn vtp(bytes: &[u8]) -> Read<Vec<Cone>> {
+fn vtp(bytes: &[u8]) -> Result<Vec<Cone>> {
     let file = VtkFile::parse(bytes)?;
     let points = file.required("Points", "")?;
     let points: &[[f64; 3]] = points.as_chunks().0;
     let of = |name| file.required::<i64>("Lines", name);
     let (vertices, ends) = (of("connectivity")?, of("offsets")?);
     let names = file.names("PointData");
-    let Some(name) = names.iter().find(|name| name.to_ascii_lowercase().contains("radius")) else {
-        return fail("the points have no radii");
-    };
+    let name = names.iter().find(|name| name.to_ascii_lowercase().contains("radius"));
+    let name = name.context("the points have no radii")?;
     let radii: Vec<f64> = file.required("PointData", name)?;
     let (mut cones, mut start) = (Vec::new(), 0);
     for end in ends {
         let end = usize::try_from(end).unwrap_or(usize::MAX);
-        let Some(line) = vertices.get(start..end) else { return fail("a line has a bad offset") };
+        let line = vertices.get(start..end).context("a line has a bad offset")?;
         start = end;
-        for pair in line.windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|v| {
-                let v = usize::try_from(v).ok()?;
-                Some((*points.get(v)?, *radii.get(v)?))
-            });
-            let (Some((p, r)), Some((q, s))) = (a, b) else { return fail("a line has a missing point or radius") };
-            cones.push(Cone { ends: [p, q], radii: [r, s] });
-        }
+        let node = |&v: &i64| usize::try_from(v).ok().and_then(|v| Some((*points.get(v)?, *radii.get(v)?)));
+        let nodes: Option<Vec<_>> = line.iter().map(node).collect();
+        let nodes = nodes.context("a line has a missing point or radius")?;
+        cones.extend(nodes.windows(2).map(|pair| Cone::between(pair[0], pair[1])));
     }
     Ok(cones)
 }
@@ -241,7 +240,7 @@ mod tests {
     }
 
     fn cones(name: &str, text: &str) -> Result<Vec<[f64; 4]>, String> {
-        let cones = read(Path::new(name), text.as_bytes()).map_err(|e| e.to_string())?;
+        let cones = read(Path::new(name), text.as_bytes()).map_err(|e| format!("{e:#}"))?;
         Ok(cones.iter().map(|cone| [cone.ends[0][0], cone.radii[0], cone.ends[1][0], cone.radii[1]]).collect())
     }
 

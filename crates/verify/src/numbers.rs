@@ -1,6 +1,6 @@
 //! Numbers of files, in text or in bytes.
 
-use crate::mesh::{Read, fail};
+use anyhow::{Context as _, Result, bail};
 use std::str::FromStr;
 
 /// Type of a number, with its length in bytes.
@@ -18,7 +18,7 @@ pub const DOUBLE: Kind = Kind::Real(8);
 
 impl Kind {
     /// Type by its name in VTK's files, or in PLY files in lower case.
-    pub fn named(name: &str) -> Read<Self> {
+    pub fn named(name: &str) -> Result<Self> {
         Ok(match name.to_ascii_lowercase().as_str() {
             "char" | "int8" => Self::Signed(1),
             "short" | "int16" => Self::Signed(2),
@@ -30,7 +30,7 @@ impl Kind {
             "uint64" => Self::Unsigned(8),
             "float" | "float32" => Self::Real(4),
             "double" | "float64" => Self::Real(8),
-            _ => return fail(format!("type '{name}' is not supported")),
+            _ => bail!("type '{name}' is not supported"),
         })
     }
 
@@ -95,22 +95,21 @@ impl<'a> Numbers<'a> {
         Self { rest: text.as_bytes(), order: Order::Text }
     }
 
-    pub fn next<T: Number>(&mut self, kind: Kind) -> Read<T> {
+    pub fn next<T: Number>(&mut self, kind: Kind) -> Result<T> {
         let is_text = self.order == Order::Text;
         if is_text {
             self.rest = self.rest.trim_ascii_start();
         }
         let word = || self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
         let length = if is_text { word() } else { kind.width() };
-        let Some((bytes, rest)) = self.rest.split_at_checked(length) else { return fail("the file ends early") };
-        self.rest = rest;
+        let bytes = self.rest.split_off(..length).context("the file ends early")?;
         let parsed = || std::str::from_utf8(bytes).ok()?.parse().ok();
         let number = if is_text { parsed() } else { T::of(kind, self.order.bits(bytes)) };
-        number.map_or_else(|| fail("the file ends early or has a word that is not a number"), Ok)
+        number.context("the file ends early or has a word that is not a number")
     }
 
     /// The next `N` numbers.
-    pub fn array<T: Number, const N: usize>(&mut self, kind: Kind) -> Read<[T; N]> {
+    pub fn array<T: Number, const N: usize>(&mut self, kind: Kind) -> Result<[T; N]> {
         let mut numbers = [T::default(); N];
         for number in &mut numbers {
             *number = self.next(kind)?;
@@ -119,7 +118,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// The next numbers. A damaged count is an error at the end of the file, before it takes memory.
-    pub fn list<T: Number>(&mut self, kind: Kind, count: i64) -> Read<Vec<T>> {
+    pub fn list<T: Number>(&mut self, kind: Kind, count: i64) -> Result<Vec<T>> {
         (0..count).map(|_| self.next(kind)).collect()
     }
 }

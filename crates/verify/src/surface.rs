@@ -1,9 +1,10 @@
 //! Readers of triangle surfaces (OFF, STL, PLY in text or binary), and the condition that a mesh keeps one.
 
 use crate::faces::{Boundary, key};
-use crate::mesh::{Mesh, Read, fail};
+use crate::mesh::Mesh;
 use crate::numbers::{DOUBLE, Kind, LONG, Numbers, Order};
 use crate::report::{Condition, Report};
+use anyhow::{Context as _, Result, bail, ensure};
 use bstr::ByteSlice as _;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -12,12 +13,12 @@ use std::path::Path;
 pub type Soup = Vec<[[f64; 3]; 3]>;
 
 /// Reads a surface; the extension selects the format.
-pub fn read(path: &Path, bytes: &[u8]) -> Read<Soup> {
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Soup> {
     match path.extension().and_then(|e| e.to_str()).unwrap_or_default() {
         "off" => off(&String::from_utf8_lossy(bytes)),
         "stl" => stl(bytes),
         "ply" => ply(bytes),
-        other => fail(format!("surfaces '.{other}' are not supported; use .off, .stl or .ply")),
+        other => bail!("surfaces '.{other}' are not supported; use .off, .stl or .ply"),
     }
 }
 
@@ -35,27 +36,28 @@ pub fn check(surface: &Soup, mesh: &Mesh, boundary: &Boundary, report: &mut Repo
 }
 
 /// Triangles of polygons with vertices in a list of points. Polygons of more vertices are an error.
-fn soup(points: &[[f64; 3]], polygons: &[Vec<i64>]) -> Read<Soup> {
+fn soup(points: &[[f64; 3]], polygons: &[Vec<i64>]) -> Result<Soup> {
     let corner = |&v: &i64| points.get(usize::try_from(v).ok()?).copied();
     let triangle = |polygon: &Vec<i64>| polygon.iter().map(corner).collect::<Option<Vec<_>>>()?.try_into().ok();
     let soup: Option<Soup> = polygons.iter().map(triangle).collect();
-    soup.map_or_else(|| fail("a face is no triangle of points of the file"), Ok)
+    soup.context("a face is no triangle of points of the file")
 }
 
-fn off(text: &str) -> Read<Soup> {
+fn off(text: &str) -> Result<Soup> {
     let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or_default()).collect();
     let text = lines.join("\n");
     let mut numbers = Numbers::text(text.trim_start().trim_start_matches("OFF"));
-    let Ok([points, faces, _]) = numbers.array::<i64, 3>(LONG) else { return fail("no numbers of points and faces") };
-    let points = (0..points).map(|_| numbers.array(DOUBLE)).collect::<Read<Vec<_>>>()?;
+    let counts = numbers.array::<i64, 3>(LONG).ok().context("no numbers of points and faces")?;
+    let [points, faces, _] = counts;
+    let points = (0..points).map(|_| numbers.array(DOUBLE)).collect::<Result<Vec<_>>>()?;
     let polygon = |_| {
         let corners = numbers.next(LONG)?;
         numbers.list(LONG, corners)
     };
-    soup(&points, &(0..faces).map(polygon).collect::<Read<Vec<_>>>()?)
+    soup(&points, &(0..faces).map(polygon).collect::<Result<Vec<_>>>()?)
 }
 
-fn stl(bytes: &[u8]) -> Read<Soup> {
+fn stl(bytes: &[u8]) -> Result<Soup> {
     let count = bytes.get(80..84).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes) as usize;
     if bytes.len() == 84 + 50 * count {
         // A normal, three corners and two further bytes.
@@ -68,10 +70,11 @@ fn stl(bytes: &[u8]) -> Read<Soup> {
     let text = String::from_utf8_lossy(bytes);
     let corners = text.lines().filter_map(|line| line.trim().strip_prefix("vertex "));
     // Readers of STL use 32-bit numbers; the text may have more digits.
-    match corners.map(|corner| Numbers::text(corner).array(DOUBLE)).collect::<Read<Vec<[f64; 3]>>>() {
-        Ok(corners) if !corners.is_empty() && corners.len().is_multiple_of(3) => Ok(corners.as_chunks().0.to_vec()),
-        _ => fail("no triangles, or a damaged one"),
-    }
+    let corners: Result<Vec<[f64; 3]>> = corners.map(|corner| Numbers::text(corner).array(DOUBLE)).collect();
+    let corners = corners.unwrap_or_default();
+    let (triangles, rest) = corners.as_chunks();
+    ensure!(!triangles.is_empty() && rest.is_empty(), "no triangles, or a damaged one");
+    Ok(triangles.to_vec())
 }
 
 /// Element of a PLY file: name, number, and properties with the type of their list length (if any) and value.
@@ -106,8 +109,8 @@ fn header(head: &str) -> (Vec<Element<'_>>, Order) {
     (elements, order)
 }
 
-fn ply(bytes: &[u8]) -> Read<Soup> {
-    let Some((head, body)) = bytes.split_once_str("end_header") else { return fail("no end_header") };
+fn ply(bytes: &[u8]) -> Result<Soup> {
+    let (head, body) = bytes.split_once_str("end_header").context("no end_header")?;
     let head = String::from_utf8_lossy(head);
     let (elements, order) = header(&head);
     let mut numbers = Numbers { rest: body.split_once_str("\n").map_or(body, |(_, rest)| rest), order };
@@ -141,7 +144,7 @@ mod tests {
     use super::*;
 
     fn soup_of(name: &str, bytes: impl AsRef<[u8]>) -> Result<Soup, String> {
-        read(Path::new(name), bytes.as_ref()).map_err(|e| e.to_string())
+        read(Path::new(name), bytes.as_ref()).map_err(|e| format!("{e:#}"))
     }
 
     /// Two triangles of the points that the files of these tests have.

@@ -1,7 +1,8 @@
 //! Reader of VTU files.
 
-use crate::mesh::{Cap, Mesh, Read, fail, index};
+use crate::mesh::{Cap, Mesh, index};
 use crate::xml::VtkFile;
+use anyhow::{Context as _, Result, bail, ensure};
 
 /// VTK's cell types.
 const TRIANGLE: i64 = 5;
@@ -12,31 +13,30 @@ const THIN: [i64; 4] = [1, 2, 3, 4];
 const LABELS: [&str; 5] = ["patch", "PatchId", "gmsh:physical", "CellEntityIds", "ModelFaceID"];
 
 /// Reads a mesh of one piece.
-pub fn read(bytes: &[u8]) -> Read<Mesh> {
+pub fn read(bytes: &[u8]) -> Result<Mesh> {
     let file = VtkFile::parse(bytes)?;
-    if file.kind() != "UnstructuredGrid" || file.pieces != 1 {
-        return fail(format!("{} of {} pieces instead of an unstructured grid of one", file.kind(), file.pieces));
-    }
+    let (kind, pieces) = (file.kind(), file.pieces);
+    let is_grid = kind == "UnstructuredGrid" && pieces == 1;
+    ensure!(is_grid, "{kind} of {pieces} pieces instead of an unstructured grid of one");
     let mut mesh = Mesh { points: file.required("Points", "")?.as_chunks().0.to_vec(), ..Mesh::default() };
     cells(&file, &mut mesh)?;
     notes(&file, &mut mesh)?;
     Ok(mesh)
 }
 
-fn cells(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
+fn cells(file: &VtkFile, mesh: &mut Mesh) -> Result<()> {
     let names = file.names("CellData");
     let data = |name: &&str| file.array::<i64>("CellData", name);
     let labels = LABELS.iter().find(|label| names.contains(label)).map_or(Ok(None), data)?;
     let regions = data(&"region")?;
     let of = |name| file.required::<i64>("Cells", name);
     let (connectivity, ends, types) = (of("connectivity")?, of("offsets")?, of("types")?);
-    if [Some(&ends), labels.as_ref(), regions.as_ref()].iter().flatten().any(|array| array.len() != types.len()) {
-        return fail("arrays of cells differ in length");
-    }
+    let mut arrays = [Some(&ends), labels.as_ref(), regions.as_ref()].into_iter().flatten();
+    ensure!(arrays.all(|array| array.len() == types.len()), "arrays of cells differ in length");
     let mut start = 0;
     for (i, (&kind, &end)) in types.iter().zip(&ends).enumerate() {
         let end = usize::try_from(end).unwrap_or(usize::MAX);
-        let Some(vertices) = connectivity.get(start..end) else { return fail(format!("cell {i} has a bad offset")) };
+        let vertices = connectivity.get(start..end).with_context(|| format!("cell {i} has a bad offset"))?;
         start = end;
         match (kind, vertices) {
             (TETRAHEDRON, &[a, b, c, d]) => {
@@ -48,7 +48,7 @@ fn cells(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
                 mesh.labels.push(labels.as_ref().map_or(0, |labels| labels[i]));
             }
             (kind, _) if THIN.contains(&kind) => {}
-            _ => return fail(format!("cell {i} of type {kind} with {} vertices is not supported", vertices.len())),
+            _ => bail!("cell {i} of type {kind} with {} vertices is not supported", vertices.len()),
         }
     }
     Ok(())
@@ -62,7 +62,7 @@ fn texts(bytes: Vec<i64>) -> Vec<String> {
 }
 
 /// Field arrays that `anastomesh` writes: names of patches, caps and the expectation.
-fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
+fn notes(file: &VtkFile, mesh: &mut Mesh) -> Result<()> {
     let whole = |name| file.array::<i64>("FieldData", name);
     if let Some(bytes) = whole("patch_names")? {
         // The first is the name of the volume. Numbers without a patch have no name.
@@ -79,9 +79,8 @@ fn notes(file: &VtkFile, mesh: &mut Mesh) -> Read<()> {
     let (centers, normals, radii) = (real("cap_center")?, real("cap_normal")?, real("cap_radius")?);
     let nodes = file.required::<i64>("FieldData", "cap_node")?;
     let (centers, normals) = (centers.as_chunks().0, normals.as_chunks().0);
-    if [nodes.len(), centers.len(), normals.len(), radii.len()].iter().any(|&length| length != patches.len()) {
-        return fail("arrays of caps differ in length");
-    }
+    let lengths = [nodes.len(), centers.len(), normals.len(), radii.len()];
+    ensure!(lengths == [patches.len(); 4], "arrays of caps differ in length");
     let cap = |i| Cap { patch: patches[i], node: nodes[i], center: centers[i], normal: normals[i], radius: radii[i] };
     mesh.caps = (0..patches.len()).map(cap).collect();
     Ok(())

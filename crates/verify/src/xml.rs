@@ -1,7 +1,7 @@
 //! Arrays of VTK's XML files, in text, base64 or appended data, raw or with zlib.
 
-use crate::mesh::{Read, ReadError, fail};
 use crate::numbers::{Kind, Number, Order};
+use anyhow::{Context as _, Result, bail, ensure};
 use base64::Engine as _;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use bstr::ByteSlice as _;
@@ -39,7 +39,7 @@ struct Array<'a> {
 
 impl<'a> VtkFile<'a> {
     /// Finds the arrays of a file.
-    pub fn parse(bytes: &'a [u8]) -> Read<Self> {
+    pub fn parse(bytes: &'a [u8]) -> Result<Self> {
         let (mut file, mut open, mut reader) = (Self::default(), Vec::<String>::new(), Reader::from_reader(bytes));
         let config = reader.config_mut();
         (config.expand_empty_elements, config.check_end_names, config.allow_unmatched_ends) = (true, false, true);
@@ -53,19 +53,20 @@ impl<'a> VtkFile<'a> {
                 Ok(Event::End(_)) => drop(open.pop()),
                 Ok(Event::Eof) => break,
                 Ok(_) => {}
-                Err(error) => return fail(format!("byte {}: {error}", reader.error_position())),
+                Err(error) => bail!("byte {}: {error}", reader.error_position()),
             }
         }
-        if file.kind().is_empty() { fail("not an XML file of VTK") } else { Ok(file) }
+        ensure!(!file.kind().is_empty(), "not an XML file of VTK");
+        Ok(file)
     }
 
     /// Adds a tag with the bytes that follow it.
-    fn add(&mut self, tag: &BytesStart, section: String, rest: &'a [u8]) -> Read<()> {
+    fn add(&mut self, tag: &BytesStart, section: String, rest: &'a [u8]) -> Result<()> {
         let mut attributes = Attributes::new();
         for attribute in tag.attributes() {
-            let error = |e: &dyn std::fmt::Display| ReadError(format!("tag {}: {e}", tag.name().as_ref()));
-            let attribute = attribute.map_err(|e| error(&e))?;
-            let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| error(&e))?;
+            let named = || format!("tag {}", tag.name().as_ref());
+            let attribute = attribute.with_context(named)?;
+            let value = attribute.normalized_value(XmlVersion::Implicit1_0).with_context(named)?;
             attributes.insert(attribute.key.as_ref().to_owned(), value.into_owned());
         }
         match tag.name().as_ref() {
@@ -96,50 +97,44 @@ impl<'a> VtkFile<'a> {
     }
 
     /// Numbers of an array; `None` if the section has none of this name. An empty name is any name.
-    pub fn array<T: Number>(&self, section: &str, name: &str) -> Read<Option<Vec<T>>> {
+    pub fn array<T: Number>(&self, section: &str, name: &str) -> Result<Option<Vec<T>>> {
         let is_meant = |a: &&Array| {
             a.section == section && (name.is_empty() || a.attributes.get("Name").is_some_and(|n| n == name))
         };
         let numbers = self.arrays.iter().find(is_meant).map(|array| self.decode(array)).transpose();
-        numbers.map_err(|e| ReadError(format!("array '{name}' of {section}: {e}")))
+        numbers.with_context(|| format!("array '{name}' of {section}"))
     }
 
     /// Numbers of an array that must exist.
-    pub fn required<T: Number>(&self, section: &str, name: &str) -> Read<Vec<T>> {
-        self.array(section, name)?.map_or_else(|| fail(format!("{section} has no array '{name}'")), Ok)
+    pub fn required<T: Number>(&self, section: &str, name: &str) -> Result<Vec<T>> {
+        self.array(section, name)?.with_context(|| format!("{section} has no array '{name}'"))
     }
 
-    fn decode<T: Number>(&self, array: &Array) -> Read<Vec<T>> {
+    fn decode<T: Number>(&self, array: &Array) -> Result<Vec<T>> {
         let kind = Kind::named(of(&array.attributes, "type"))?;
-        if T::of(kind, 0).is_none() {
-            return fail("floating-point numbers instead of integers");
-        }
+        ensure!(T::of(kind, 0).is_some(), "floating-point numbers instead of integers");
         let bytes = match of(&array.attributes, "format") {
             "ascii" => {
                 let words = array.text.to_str().unwrap_or("?").split_ascii_whitespace().map(|word| word.parse().ok());
-                return words.collect::<Option<_>>().map_or_else(|| fail("a word is not a number"), Ok);
+                return words.collect::<Option<_>>().context("a word is not a number");
             }
             "appended" => {
                 let offset = of(&array.attributes, "offset").parse().ok();
-                let Some(data) = offset.and_then(|offset: usize| self.appended.get(offset..)) else {
-                    return fail("its offset is beyond the file");
-                };
-                self.payload(data, self.is_base64)?
+                let data = offset.and_then(|offset: usize| self.appended.get(offset..));
+                self.payload(data.context("its offset is beyond the file")?, self.is_base64)?
             }
             "binary" => self.payload(array.text.trim_ascii(), true)?,
-            other => return fail(format!("unknown format '{other}'")),
+            other => bail!("unknown format '{other}'"),
         };
         let (words, order) = (bytes.chunks_exact(kind.width()), self.order());
-        if !words.remainder().is_empty() {
-            return fail("its length is no multiple of the size of a number");
-        }
+        ensure!(words.remainder().is_empty(), "its length is no multiple of the size of a number");
         Ok(words.filter_map(|word| T::of(kind, order.bits(word))).collect())
     }
 
     /// Bytes of an array, from its header on.
-    fn payload(&self, data: &[u8], is_base64: bool) -> Read<Vec<u8>> {
+    fn payload(&self, data: &[u8], is_base64: bool) -> Result<Vec<u8>> {
         let width = if of(&self.attributes, "header_type") == "UInt64" { 8 } else { 4 };
-        let header = |count: usize| -> Read<Vec<usize>> {
+        let header = |count: usize| -> Result<Vec<usize>> {
             let bytes = decoded(data, count.saturating_mul(width), is_base64)?;
             Ok(bytes.chunks(width).map(|word| self.order().bits(word).try_into().unwrap_or(usize::MAX)).collect())
         };
@@ -147,7 +142,7 @@ impl<'a> VtkFile<'a> {
         match of(&self.attributes, "compressor") {
             "" => return Ok(decoded(data, count.saturating_add(width), is_base64)?.split_off(width)),
             "vtkZLibDataCompressor" => {}
-            other => return fail(format!("compressor '{other}' is not supported")),
+            other => bail!("compressor '{other}' is not supported"),
         }
         let header = header(count.saturating_add(3))?;
         let (full, last, sizes) = (header[1], header[2], &header[3..]);
@@ -161,9 +156,8 @@ impl<'a> VtkFile<'a> {
             let expected = if i + 1 == count && last > 0 { last } else { full };
             let end = out.len().saturating_add(expected);
             let mut decoder = flate2::read::ZlibDecoder::new(block).take((expected as u64).saturating_add(1));
-            if decoder.read_to_end(&mut out).is_err() || out.len() != end {
-                return fail(format!("block {i} of its compressed data is damaged"));
-            }
+            let is_sound = decoder.read_to_end(&mut out).is_ok() && out.len() == end;
+            ensure!(is_sound, "block {i} of its compressed data is damaged");
             rest = others;
         }
         Ok(out)
@@ -185,25 +179,20 @@ fn letters(length: usize) -> usize {
 }
 
 /// The first bytes of raw or base64 data.
-fn decoded(data: &[u8], length: usize, is_base64: bool) -> Read<Vec<u8>> {
+fn decoded(data: &[u8], length: usize, is_base64: bool) -> Result<Vec<u8>> {
     let data = &data[..data.len().min(if is_base64 { letters(length) } else { length })];
-    let decoded = if is_base64 { BASE64.decode(data) } else { Ok(data.to_vec()) };
-    match decoded {
-        Ok(bytes) if bytes.len() < length && is_base64 => fail("its base64 text is too short"),
-        Ok(bytes) if bytes.len() < length => fail("the file ends inside it"),
-        Ok(mut bytes) => {
-            bytes.truncate(length);
-            Ok(bytes)
-        }
-        Err(_) => fail("its base64 text is damaged"),
-    }
+    let decoded = if is_base64 { BASE64.decode(data).ok() } else { Some(data.to_vec()) };
+    let mut bytes = decoded.context("its base64 text is damaged")?;
+    ensure!(bytes.len() >= length, if is_base64 { "its base64 text is too short" } else { "the file ends inside it" });
+    bytes.truncate(length);
+    Ok(bytes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn whole(xml: &str) -> Read<Vec<i64>> {
+    fn whole(xml: &str) -> Result<Vec<i64>> {
         VtkFile::parse(xml.as_bytes())?.required("Cells", "a")
     }
 
@@ -219,10 +208,10 @@ mod tests {
         let big = "byte_order='BigEndian' header_type='UInt64'";
         assert_eq!(array(big, "AAAAAAAAAAQAAAAB").expect("readable"), [1]);
         assert!(array("", "CAAAAAEAAAD+").is_err());
-        let damaged = array("", "CAAAA").expect_err("one letter").to_string();
-        assert_eq!(damaged, "array 'a' of Cells: its base64 text is damaged");
+        let damaged = array("", "CAAAA").expect_err("one letter");
+        assert_eq!(format!("{damaged:#}"), "array 'a' of Cells: its base64 text is damaged");
         assert_eq!(
-            array("", "CAAA").expect_err("a cut header").to_string(),
+            format!("{:#}", array("", "CAAA").expect_err("a cut header")),
             "array 'a' of Cells: its base64 text is too short"
         );
         assert!(array("compressor='vtkLZ4DataCompressor'", "CAAAAAEAAAD+////").is_err());

@@ -10,7 +10,7 @@ fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).expect("a file");
-    read_mesh(&path).map_err(|e| e.to_string())
+    read_mesh(&path).map_err(|e| format!("{e:#}"))
 }
 
 /// Cube with coordinates that 32 bits store exactly, and negative labels.
@@ -412,7 +412,7 @@ fn tetgen_files_count_from_the_first_node() {
                 std::fs::write(path, text).expect("a file");
             }
         }
-        read_mesh(&folder.path().join("m.ele")).map_err(|e| e.to_string())
+        read_mesh(&folder.path().join("m.ele")).map_err(|e| format!("{e:#}"))
     };
     let nodes = "4 3 1 0\n# x y z, and an attribute\n5 0 0 0 9\n6 1 0 0 9\n\n7 0 1 0 9 # the third\n8 0 0 1 9\n";
     let (tets, faces) = ("1 4 1\n1 5 6 7 8 2\n", "2 1\n1 5 7 6 3\n2 5 6 8 -4\n");
