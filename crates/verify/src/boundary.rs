@@ -11,37 +11,31 @@ use rstar::Envelope as _;
 
 /// Checks the boundary, and compares it with the expectation of the file.
 pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
-    let count = boundary.faces.len();
-    let (mut surfaces, mut fans) = (Sets::new(count), Sets::new(3 * count));
-    let edges = edges(&boundary.faces);
+    let faces = &boundary.faces;
+    let (mut surfaces, mut fans) = (Sets::new(faces.len()), Sets::new(3 * faces.len()));
     let mut wrong = Vec::new();
-    for group in edges.chunk_by(|a, b| a.ends == b.ends) {
+    for group in edges(faces).chunk_by(|a, b| a.ends == b.ends) {
         for pair in group.windows(2) {
             surfaces.join(pair[0].face, pair[1].face);
-            for end in 0..2 {
-                fans.join(pair[0].corners[end], pair[1].corners[end]);
-            }
+            (0..2).for_each(|end| fans.join(pair[0].corners[end], pair[1].corners[end]));
         }
         if group.len() != 2 || group[0].is_reversed == group[1].is_reversed {
-            wrong.push(group[0].ends);
+            wrong.push(Ids(group[0].ends));
         }
     }
-    report.add(C::BoundaryEdges, wrong.into_iter().map(Ids));
-    let several = several_fans(&boundary.faces, fans);
-    report.add(C::BoundaryFans, several);
-    let crossings = crossings(&mesh.points, &boundary.faces);
-    let shown = crossings.iter().map(|pair| pair.map(|i| Ids(boundary.faces[i as usize]).to_string()).join(" and "));
-    report.add(C::NoSelfIntersection, shown);
-    if let Some(expected) = &mesh.expected_loops {
+    report.add(C::BoundaryEdges, wrong);
+    report.add(C::BoundaryFans, several_fans(faces, fans));
+    let shown = |pair: [u32; 2]| pair.map(|i| Ids(faces[i as usize]).to_string()).join(" and ");
+    report.add(C::NoSelfIntersection, crossings(&mesh.points, faces).into_iter().map(shown));
+    if let Some(expected) = mesh.expected_loops.as_ref().map(Vec::len) {
         let found = report.figures.components;
-        let differs = found != expected.len();
-        report.add(C::Components, differs.then(|| format!("expected {}, found {found}", expected.len())));
+        report.add(C::Components, (found != expected).then(|| format!("expected {expected}, found {found}")));
     }
     if report.holds(C::BoundaryEdges) && report.holds(C::BoundaryFans) {
-        let (surface, surface_count) = surfaces.numbered();
-        genera(mesh, boundary, &surface, surface_count, report);
+        let surfaces = surfaces.groups();
+        genera(mesh, boundary, &surfaces, report);
         if report.holds(C::NoSelfIntersection) {
-            nesting(mesh, boundary, &surface, surface_count, report);
+            nesting(mesh, boundary, &surfaces, report);
         }
     }
 }
@@ -82,32 +76,31 @@ fn several_fans(faces: &[[u32; 3]], fans: Sets) -> Vec<u32> {
     at.chunk_by(|a, b| a.0 == b.0).filter(|fans| fans.len() > 1).map(|fans| fans[0].0).collect()
 }
 
-/// Checks the genus of each component.
-fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
-    let (mut euler, mut owner) = (vec![0; count as usize], vec![0; count as usize]);
-    let mut is_new = vec![true; mesh.points.len()];
-    for (i, face) in boundary.faces.iter().enumerate() {
-        let s = surface[i] as usize;
-        // With one fan at each vertex, a vertex belongs to one surface. Each face has a half of three edges.
-        euler[s] += 2 * face.iter().filter(|&&v| std::mem::take(&mut is_new[v as usize])).count() as i64 - 1;
-        owner[s] = boundary.component[i] as usize;
-    }
-    // Here `euler` is twice the characteristic, 2 (2 - 2g).
-    let genera: Vec<i64> = euler.iter().map(|e| (4 - e) / 4).collect();
+/// Checks the genus of each component. Surfaces are lists of faces.
+fn genera(mesh: &Mesh, boundary: &Boundary, surfaces: &[Vec<u32>], report: &mut Report) {
+    let genus = |surface: &Vec<u32>| {
+        let mut vertices: Vec<u32> = surface.iter().flat_map(|&i| boundary.faces[i as usize]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        // The Euler characteristic is 2 - 2g. Each face has a half of three edges.
+        (4 + surface.len() as i64 - 2 * vertices.len() as i64) / 4
+    };
+    let genera: Vec<i64> = surfaces.iter().map(genus).collect();
     report.figures.genus = genera.iter().sum();
-    let Some(expected) = &mesh.expected_loops else { return };
+    let Some(mut expected) = mesh.expected_loops.clone() else { return };
     let mut found: Vec<Vec<i64>> = vec![Vec::new(); report.figures.components];
-    owner.iter().zip(&genera).for_each(|(&component, &genus)| found[component].push(genus));
-    let mut violations: Vec<String> = Vec::new();
-    for (component, genera) in found.iter().enumerate().filter(|(_, genera)| genera.len() != 1) {
-        violations.push(format!("component {component} has {} boundary surfaces", genera.len()));
+    for (surface, &genus) in surfaces.iter().zip(&genera) {
+        found[boundary.component[surface[0] as usize] as usize].push(genus);
     }
-    let (mut found, mut expected) = (found.concat(), expected.clone());
+    let others = found.iter().map(Vec::len).enumerate().filter(|(_, count)| *count != 1);
+    let mut violations: Vec<String> =
+        others.map(|(component, count)| format!("component {component} has {count} boundary surfaces")).collect();
+    let mut found = found.concat();
     found.sort_unstable();
     expected.sort_unstable();
     if violations.is_empty() && found != expected {
         let differs = found.iter().zip(&expected).find(|(f, e)| f != e);
-        let [f, e] = differs.map_or([found.len() as i64, expected.len() as i64], |(&f, &e)| [f, e]);
+        let (f, e) = differs.map_or((found.len() as i64, expected.len() as i64), |(&f, &e)| (f, e));
         violations.push(format!("expected {e}, found {f}"));
     }
     report.add(C::Loops, violations);
@@ -115,20 +108,16 @@ fn genera(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report:
 
 /// Checks that every point of space is covered at most once. An outer surface must lie outside all others, and a cavity
 /// inside exactly one.
-fn nesting(mesh: &Mesh, boundary: &Boundary, surface: &[u32], count: u32, report: &mut Report) {
-    let corners = |i: usize| boundary.faces[i].map(|v| mesh.points[v as usize]);
-    let mut own: Vec<Vec<[Point; 3]>> = vec![Vec::new(); count as usize];
-    surface.iter().enumerate().for_each(|(i, &s)| own[s as usize].push(corners(i)));
+fn nesting(mesh: &Mesh, boundary: &Boundary, surfaces: &[Vec<u32>], report: &mut Report) {
+    let corners = |&i: &u32| boundary.faces[i as usize].map(|v| mesh.points[v as usize]);
+    let own: Vec<Vec<[Point; 3]>> = surfaces.iter().map(|surface| surface.iter().map(corners).collect()).collect();
     let boxes: Vec<Bounds> = own.iter().map(|triangles| Bounds::from_points(triangles.as_flattened())).collect();
-    let mut wrong = Vec::new();
-    for (s, triangles) in own.iter().enumerate() {
-        let point = triangles[0][0];
+    let is_wrong = |&s: &usize| {
+        let point = own[s][0][0];
         let others = (0..own.len()).filter(|&other| other != s && boxes[other].contains_point(&point));
         let depth: i32 = others.map(|other| winding(&point, &own[other])).sum();
-        if depth != i32::from(volume_sign(&point, triangles) < 0) {
-            let first = surface.iter().position(|&own| own as usize == s).unwrap_or_default();
-            wrong.push(format!("surface of face {}", Ids(boundary.faces[first])));
-        }
-    }
-    report.add(C::NoNesting, wrong);
+        depth != i32::from(volume_sign(&point, &own[s]) < 0)
+    };
+    let first = |s: usize| Ids(boundary.faces[surfaces[s][0] as usize]);
+    report.add(C::NoNesting, (0..own.len()).filter(is_wrong).map(|s| format!("surface of face {}", first(s))));
 }

@@ -17,24 +17,21 @@ pub fn crossings(points: &[Point], faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
 fn intersect(points: &[Point], s: [u32; 3], t: [u32; 3]) -> bool {
     let at = |v: u32| &points[v as usize];
     let (Some(s_axes), Some(t_axes)) = (axes(s.map(at)), axes(t.map(at))) else { return false };
-    let common: Vec<u32> = s.into_iter().filter(|v| t.contains(v)).collect();
-    let sides = |face: [u32; 3]| [0, 1, 2].map(|i| [at(face[i]), at(face[(i + 1) % 3])]);
+    let is_common = |v: &u32| s.contains(v) && t.contains(v);
+    let common: Vec<u32> = s.into_iter().filter(is_common).collect();
     match common[..] {
-        [] => {
-            sides(s).into_iter().any(|side| meets(side, t.map(at), t_axes))
-                || sides(t).into_iter().any(|side| meets(side, s.map(at), s_axes))
-        }
         // Beyond a common vertex, the first exit is through the opposite side of one triangle.
-        [v] => {
-            let opposite = |face: [u32; 3]| {
-                let i = face.iter().position(|&w| w == v).unwrap_or_default();
-                [at(face[(i + 1) % 3]), at(face[(i + 2) % 3])]
+        [] | [_] => {
+            let any_meets = |from: [u32; 3], to: [u32; 3], axes| {
+                let sides = [[0, 1], [1, 2], [2, 0]].map(|side| side.map(|i| from[i]));
+                let free = sides.iter().filter(|side| !side.iter().any(is_common));
+                free.into_iter().any(|side| meets(side.map(at), to.map(at), axes))
             };
-            meets(opposite(s), t.map(at), t_axes) || meets(opposite(t), s.map(at), s_axes)
+            any_meets(s, t, t_axes) || any_meets(t, s, s_axes)
         }
         // Beyond a common edge, only triangles folded onto each other intersect.
         [u, v] => {
-            let apex = |face: [u32; 3]| at(face.into_iter().find(|w| ![u, v].contains(w)).unwrap_or(u));
+            let apex = |face: [u32; 3]| at(face.into_iter().find(|w| !is_common(w)).unwrap_or(u));
             let (p, q) = (apex(s), apex(t));
             let turn = |r: &Point| orient_2d(flat(at(u), s_axes), flat(at(v), s_axes), flat(r, s_axes));
             orient_3d(at(u), at(v), p, q) == 0 && turn(p) == turn(q)
@@ -45,9 +42,11 @@ fn intersect(points: &[Point], s: [u32; 3], t: [u32; 3]) -> bool {
 
 /// Axes of a projection in which the triangle has an area; `None` if it is degenerate.
 fn axes(t: [&Point; 3]) -> Option<[usize; 2]> {
-    [[0, 1], [1, 2], [2, 0]]
-        .into_iter()
-        .find(|&axes| orient_2d(flat(t[0], axes), flat(t[1], axes), flat(t[2], axes)) != 0)
+    let has_area = |axes: &[usize; 2]| {
+        let [a, b, c] = t.map(|p| flat(p, *axes));
+        orient_2d(a, b, c) != 0
+    };
+    [[0, 1], [1, 2], [2, 0]].into_iter().find(has_area)
 }
 
 fn flat(p: &Point, axes: [usize; 2]) -> [f64; 2] {

@@ -6,6 +6,7 @@ use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 use crate::space::{Point, cross, dot, minus};
+use std::array::from_fn;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 
@@ -43,19 +44,13 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
 fn differences(mesh: &Mesh, boundary: &Boundary) -> Vec<[u32; 3]> {
     let may_be_inside = mesh.expected_loops.is_none();
     let is_allowed = |face: &[u32; 3]| may_be_inside && boundary.labelled_inside.binary_search(face).is_ok();
-    let entry = |&face: &[u32; 3]| (key(face), is_odd(face) && !mesh.is_undirected);
-    let mut real: Vec<_> = boundary.faces.iter().map(entry).collect();
-    let mut labelled: Vec<_> = mesh.triangles.iter().map(entry).filter(|(face, _)| !is_allowed(face)).collect();
-    real.sort_unstable();
-    labelled.sort_unstable();
-    let mut different = Vec::new();
-    let (mut real, mut labelled) = (real.into_iter().peekable(), labelled.into_iter().peekable());
-    while let Some(first) = real.peek().into_iter().chain(labelled.peek()).min().copied() {
-        let (a, b) = (real.next_if_eq(&first), labelled.next_if_eq(&first));
-        if a.is_none() || b.is_none() {
-            different.push(first.0);
-        }
-    }
+    let entry = |face: [u32; 3], is_label| (key(face), is_odd(face) && !mesh.is_undirected, is_label);
+    let labels = mesh.triangles.iter().map(|&face| entry(face, true)).filter(|(face, ..)| !is_allowed(face));
+    let mut all: Vec<_> = boundary.faces.iter().map(|&face| entry(face, false)).chain(labels).collect();
+    all.sort_unstable();
+    let groups = all.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+    let wrong = groups.filter(|group| !matches!(group, [(.., false), (.., true)]));
+    let mut different: Vec<[u32; 3]> = wrong.map(|group| group[0].0).collect();
     different.dedup();
     different
 }
@@ -75,8 +70,8 @@ fn patches(mesh: &Mesh, report: &mut Report) {
     if !terminals.is_empty() && mesh.patches.iter().any(is_grouped) {
         with_caps.extend(ids);
     }
-    let unknown = mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| !with_caps.contains(label));
-    report.add(C::WallOrCap, unknown.map(|(&face, label)| format!("patch {label} of face {}", Ids(face))));
+    let unknown = mesh.labelled().filter(|(_, label)| !with_caps.contains(label));
+    report.add(C::WallOrCap, unknown.map(|(face, label)| format!("patch {label} of face {}", Ids(face))));
 }
 
 fn is_cap_name(name: &str) -> bool {
@@ -86,30 +81,32 @@ fn is_cap_name(name: &str) -> bool {
 /// Checks the shapes of caps, and of patches that are named like caps.
 fn caps(mesh: &Mesh, report: &mut Report) {
     let mut triangles: HashMap<i64, Vec<[u32; 3]>> = HashMap::new();
-    for (&face, &label) in mesh.triangles.iter().zip(&mesh.labels).filter(|(_, label)| **label != WALL) {
+    for (face, label) in mesh.labelled().filter(|(_, label)| *label != WALL) {
         triangles.entry(label).or_default().push(face);
     }
+    let of = |patch: i64| triangles.get(&patch).map_or(&[][..], Vec::as_slice);
     let mut violations: [Vec<String>; 5] = Default::default();
-    let described: HashSet<i64> = mesh.caps.iter().map(|cap| cap.patch).collect();
+    let mut add = |holds: &[bool], place: String| {
+        let violated = violations.iter_mut().zip(holds).filter(|(_, holds)| !**holds);
+        violated.for_each(|(list, _)| list.push(place.clone()));
+    };
     for cap in &mesh.caps {
-        let own = triangles.get(&cap.patch).map_or(&[][..], Vec::as_slice);
-        let holds = Shape::of(&mesh.points, own, cap.center, Some(cap.normal), cap.radius).compare();
-        let holds = [discs(own).len() == 1 && is_disc(own), holds[0], holds[1], holds[2], holds[3]];
-        let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
-        wrong.for_each(|(list, _)| list.push(format!("patch {}", cap.patch)));
+        let own = of(cap.patch);
+        let shape = Shape::of(&mesh.points, own, cap.center, Some(cap.normal), cap.radius);
+        let is_one_disc = discs(own).len() == 1 && is_disc(own);
+        let has_area = cap.radius.is_sign_positive() && (shape.area - PI).abs() <= 0.05 * PI;
+        let holds = [is_one_disc, shape.is_flat(1.0), shape.off_centre <= 0.1, has_area, shape.faces_along];
+        add(&holds, format!("patch {}", cap.patch));
     }
-    for (id, name) in &mesh.patches {
-        if described.contains(id) || !is_cap_name(name) {
-            continue;
-        }
-        for part in discs(triangles.get(id).map_or(&[][..], Vec::as_slice)) {
+    let is_described = |id: i64| mesh.caps.iter().any(|cap| cap.patch == id);
+    for (id, _) in mesh.patches.iter().filter(|(id, name)| is_cap_name(name) && !is_described(*id)) {
+        for part in discs(of(*id)) {
             let center = mesh.points[part[0][0] as usize];
             let corners = part.iter().flatten().flat_map(|&v| minus(mesh.points[v as usize], center));
             let unit = corners.map(f64::abs).fold(0.0, f64::max);
             let shape = Shape::of(&mesh.points, &part, center, None, unit);
             let holds = [is_disc(&part), shape.is_flat((shape.area / PI).sqrt())];
-            let wrong = violations.iter_mut().zip(holds).filter(|(_, holds)| !holds);
-            wrong.for_each(|(list, _)| list.push(format!("patch {id} at face {}", Ids(part[0]))));
+            add(&holds, format!("patch {id} at face {}", Ids(part[0])));
         }
     }
     let conditions = [C::CapDisc, C::CapFlat, C::CapCentred, C::CapArea, C::CapNormal];
@@ -119,9 +116,8 @@ fn caps(mesh: &Mesh, report: &mut Report) {
     }
 }
 
+/// Shape of triangles, with lengths in a unit.
 struct Shape {
-    /// Unit of all lengths, in the unit of the file.
-    unit: f64,
     area: f64,
     /// Distance of the centroid from the given centre.
     off_centre: f64,
@@ -133,33 +129,30 @@ struct Shape {
 }
 
 impl Shape {
-    /// Shape of triangles, with all lengths in a unit; without a normal, that of their mean.
+    /// Shape of triangles around a centre; without a normal, along their mean one.
     fn of(points: &[Point], triangles: &[[u32; 3]], center: Point, normal: Option<Point>, unit: f64) -> Self {
-        let corners = |t: &[u32; 3]| t.map(|v| minus(points[v as usize], center).map(|x| x / unit));
-        let areas: Vec<Point> = triangles.iter().map(|t| area(corners(t))).collect();
-        let sum = areas.iter().fold([0.0; 3], |sum, a| [0, 1, 2].map(|k| sum[k] + a[k]));
-        let normal = normal.unwrap_or(sum);
+        let corner = |v: u32| minus(points[v as usize], center).map(|x| x / unit);
+        let corners: Vec<[Point; 3]> = triangles.iter().map(|t| t.map(corner)).collect();
+        // Half of the cross product is as long as the area.
+        let areas = corners.iter().map(|[a, b, c]| cross(minus(*b, *a), minus(*c, *a)).map(|x| x / 2.0));
+        let areas: Vec<Point> = areas.collect();
+        let normal = normal.unwrap_or_else(|| areas.iter().fold([0.0; 3], |sum, a| from_fn(|k| sum[k] + a[k])));
         let length = dot(normal, normal).sqrt();
         let normal = normal.map(|x| x / length);
-        let (mut total, mut moment, mut range) = (0.0, [0.0; 3], [f64::INFINITY, f64::NEG_INFINITY]);
-        for (t, a) in triangles.iter().zip(&areas) {
-            let (a, corners) = (dot(*a, *a).sqrt(), corners(t));
-            total += a;
-            for p in corners {
-                moment = [0, 1, 2].map(|k| moment[k] + a / 3.0 * p[k]);
-                let height = dot(p, normal);
-                range = [range[0].min(height), range[1].max(height)];
-            }
+        let (mut area, mut moment) = (0.0, [0.0; 3]);
+        for (t, own) in corners.iter().zip(areas.iter().map(|a| dot(*a, *a).sqrt())) {
+            area += own;
+            moment = t.iter().fold(moment, |moment, p| from_fn(|k| moment[k] + own / 3.0 * p[k]));
         }
+        let heights = || corners.iter().flatten().map(|p| dot(*p, normal));
         let vertices = || triangles.iter().flatten().map(|&v| points[v as usize]);
         let is_rounded = vertices().flatten().all(|x| f64::from(x as f32) == x);
         let rounding = ROUNDING[usize::from(!is_rounded)];
         let shift = |p: Point| rounding * dot(p.map(|x| (x / unit).abs()), normal.map(f64::abs));
         Self {
-            unit,
-            area: total,
-            off_centre: dot(moment, moment).sqrt() / total,
-            height: (range[1] - range[0]) / 2.0,
+            area,
+            off_centre: dot(moment, moment).sqrt() / area,
+            height: (heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)) / 2.0,
             rounding: vertices().map(shift).fold(0.0, f64::max),
             faces_along: !areas.is_empty() && areas.iter().all(|&a| dot(a, normal) > 0.0),
         }
@@ -169,17 +162,6 @@ impl Shape {
     fn is_flat(&self, radius: f64) -> bool {
         self.area > 0.0 && self.height <= FLATNESS * radius + self.rounding
     }
-
-    /// Flatness, centre, area and direction of a described cap, whose radius is the unit.
-    fn compare(&self) -> [bool; 4] {
-        let has_area = self.unit.is_sign_positive() && (self.area - PI).abs() <= 0.05 * PI;
-        [self.is_flat(1.0), self.off_centre <= 0.1, has_area, self.faces_along]
-    }
-}
-
-/// Point along the normal of a triangle, as long as its area.
-fn area([a, b, c]: [Point; 3]) -> Point {
-    cross(minus(b, a), minus(c, a)).map(|x| x / 2.0)
 }
 
 /// Parts of triangles that are connected by edges.
@@ -188,10 +170,8 @@ fn discs(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
     let edges = edges(triangles);
     let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
     pairs.for_each(|pair| sets.join(pair[0].face, pair[1].face));
-    let (part, count) = sets.numbered();
-    let mut parts = vec![Vec::new(); count as usize];
-    triangles.iter().zip(part).for_each(|(&t, part)| parts[part as usize].push(t));
-    parts
+    let triangle = |i: u32| triangles[i as usize];
+    sets.groups().into_iter().map(|part| part.into_iter().map(triangle).collect()).collect()
 }
 
 /// True if triangles that are connected by edges form a disc: an oriented surface with a rim and the Euler number 1.

@@ -33,6 +33,11 @@ impl Mesh {
         self.tet_regions.get(tet).copied().unwrap_or(0)
     }
 
+    /// Labelled triangles with their patches.
+    pub(crate) fn labelled(&self) -> impl Iterator<Item = ([u32; 3], i64)> {
+        self.triangles.iter().copied().zip(self.labels.iter().copied())
+    }
+
     /// Name of a patch; empty if unknown.
     pub(crate) fn patch_name(&self, label: i64) -> &str {
         self.patches.iter().find(|(id, _)| *id == label).map_or("", |(_, name)| name)

@@ -36,12 +36,10 @@ impl Cone {
         let across = (dot(from, from) - along * along).max(0.0).sqrt();
         // The nearest ball is not beside the point if the vessel tapers.
         let shift = across * slope / (1.0 - slope * slope).max(1e-300).sqrt();
-        let at = if slope.abs() < 1.0 {
-            (along + shift).clamp(0.0, length)
-        } else if slope > 0.0 {
-            length
-        } else {
-            0.0
+        let at = match slope {
+            1.0.. => length,
+            ..=-1.0 => 0.0,
+            _ => (along + shift).clamp(0.0, length),
         };
         let radius = self.radii[0] + slope * at;
         [across.hypot(along - at) - radius, radius]
@@ -86,7 +84,7 @@ fn swc(text: &str) -> Result<Vec<Cone>> {
 fn vtp(bytes: &[u8]) -> Result<Vec<Cone>> {
     let file = VtkFile::parse(bytes)?;
     let points = file.required("Points", "")?;
-    let points: &[[f64; 3]] = points.as_chunks().0;
+    let points: &[Point] = points.as_chunks().0;
     let of = |name| file.required::<i64>("Lines", name);
     let (vertices, ends) = (of("connectivity")?, of("offsets")?);
     let names = file.names("PointData");
@@ -108,12 +106,9 @@ fn vtp(bytes: &[u8]) -> Result<Vec<Cone>> {
 
 /// Adds the condition that wall vertices are within a tolerance of the nearest vessel's surface, in radii of the vessel.
 pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
-    let of = |is_meant: fn(&i64) -> bool| {
-        let own = mesh.triangles.iter().zip(&mesh.labels).filter(move |(_, label)| is_meant(label));
-        own.flat_map(|(face, _)| face).copied()
-    };
-    let (mut wall, mut on_caps): (Vec<u32>, HashSet<u32>) =
-        (of(|&l| l == WALL).collect(), of(|&l| l != WALL).collect());
+    let (wall, caps): (Vec<_>, Vec<_>) = mesh.labelled().partition(|(_, label)| *label == WALL);
+    let vertices = |own: Vec<([u32; 3], i64)>| own.into_iter().flat_map(|(face, _)| face);
+    let (mut wall, mut on_caps): (Vec<u32>, HashSet<u32>) = (vertices(wall).collect(), vertices(caps).collect());
     // Without labels, every boundary vertex belongs to the wall, except those in the plane of a cap and near it.
     if mesh.triangles.is_empty() {
         let is_on = |p: &Point, cap: &Cap| {

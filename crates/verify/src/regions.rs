@@ -45,7 +45,7 @@ fn regions(mesh: &Mesh, sides: &[Side]) -> Option<[i64; 2]> {
 
 fn interfaces(mesh: &Mesh, sides: &Sides, report: &mut Report) {
     let (mut labelled, mut wrong) = (HashSet::new(), Vec::new());
-    for (&triangle, &label) in mesh.triangles.iter().zip(&mesh.labels) {
+    for (triangle, label) in mesh.labelled() {
         let own = sides.of(triangle);
         let (pair, named) = (regions(mesh, own), named_pair(mesh, mesh.patch_name(label)));
         let mut add = |is_wrong: bool| wrong.extend(is_wrong.then(|| format!("{} of patch {label}", Ids(triangle))));
@@ -90,7 +90,7 @@ fn part(mesh: &Mesh, sides: &Sides, id: i64, is_lumen: bool) -> Mesh {
     if !is_lumen || mesh.expected_loops.is_none() {
         return part;
     }
-    for (&triangle, &label) in mesh.triangles.iter().zip(&mesh.labels) {
+    for (triangle, label) in mesh.labelled() {
         let all = sides.of(triangle);
         let own: Vec<&Side> = all.iter().filter(|side| region(mesh, side) == id).collect();
         let [side] = own[..] else { continue };

@@ -26,16 +26,20 @@ impl Sets {
 
     /// Number of the set of each number, in order of first members, and the number of sets.
     pub fn numbered(mut self) -> (Vec<u32>, u32) {
-        let (mut numbers, mut count) = (vec![0; self.0.len()], 0);
+        let (mut numbers, mut count) = (Vec::with_capacity(self.0.len()), 0);
         for i in 0..self.0.len() as u32 {
             let root = self.root(i);
-            if root == i {
-                numbers[i as usize] = count;
-                count += 1;
-            } else {
-                numbers[i as usize] = numbers[root as usize];
-            }
+            numbers.push(if root == i { count } else { numbers[root as usize] });
+            count += u32::from(root == i);
         }
         (numbers, count)
+    }
+
+    /// Members of each set, in order of first members.
+    pub fn groups(self) -> Vec<Vec<u32>> {
+        let (numbers, count) = self.numbered();
+        let mut groups = vec![Vec::new(); count as usize];
+        (0..).zip(numbers).for_each(|(i, number)| groups[number as usize].push(i));
+        groups
     }
 }

@@ -4,13 +4,14 @@ use crate::faces::{Boundary, key};
 use crate::mesh::Mesh;
 use crate::numbers::{DOUBLE, Kind, LONG, Numbers, Order};
 use crate::report::{Condition, Report};
+use crate::space::Point;
 use anyhow::{Context as _, Result, bail, ensure};
 use bstr::ByteSlice as _;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Triangles as positions of their corners.
-pub type Soup = Vec<[[f64; 3]; 3]>;
+pub type Soup = Vec<[Point; 3]>;
 
 /// Reads a surface; the extension selects the format.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<Soup> {
@@ -28,7 +29,7 @@ pub fn check(surface: &Soup, mesh: &Mesh, boundary: &Boundary, report: &mut Repo
     let place = |p: &[f64; 3]| p.map(|x| (x + 0.0).to_bits());
     let numbers: HashMap<_, u32> = mesh.points.iter().map(place).zip(0..).collect();
     let faces: HashSet<[u32; 3]> = boundary.faces.iter().chain(&boundary.labelled_inside).map(|&f| key(f)).collect();
-    let is_kept = |t: &[[f64; 3]; 3]| {
+    let is_kept = |t: &[Point; 3]| {
         let vertices = t.each_ref().map(|p| numbers.get(&place(p)).copied());
         matches!(vertices, [Some(a), Some(b), Some(c)] if faces.contains(&key([a, b, c])))
     };
@@ -77,33 +78,20 @@ fn stl(bytes: &[u8]) -> Result<Soup> {
     Ok(triangles.to_vec())
 }
 
-/// Element of a PLY file: name, number, and properties with the type of their list length (if any) and value.
-type Element<'a> = (&'a str, i64, Vec<(Option<&'a str>, &'a str, &'a str)>);
+/// Element of a PLY file: name, number, and types and name of each property.
+type Element<'a> = (&'a str, i64, Vec<(Vec<&'a str>, &'a str)>);
 
 /// Elements and format of a PLY file.
 fn header(head: &str) -> (Vec<Element<'_>>, Order) {
     let (mut elements, mut order): (Vec<Element>, _) = (Vec::new(), Order::Little);
     for line in head.lines() {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        let property = match words[..] {
-            ["property", "list", length, kind, name] => (Some(length), kind, name),
-            ["property", kind, name] => (None, kind, name),
-            ["element", name, count] => {
-                elements.push((name, count.parse().unwrap_or(0), Vec::new()));
-                continue;
-            }
-            ["format", format, _] => {
-                order = match format {
-                    "ascii" => Order::Text,
-                    "binary_big_endian" => Order::Big,
-                    _ => Order::Little,
-                };
-                continue;
-            }
-            _ => continue,
-        };
-        if let Some((_, _, properties)) = elements.last_mut() {
-            properties.push(property);
+        match (&words[..], elements.last_mut()) {
+            (["format", "ascii", _], _) => order = Order::Text,
+            (["format", "binary_big_endian", _], _) => order = Order::Big,
+            (["element", name, count], _) => elements.push((name, count.parse().unwrap_or(0), Vec::new())),
+            (["property", kinds @ .., name], Some((.., properties))) => properties.push((kinds.to_vec(), name)),
+            _ => {}
         }
     }
     (elements, order)
@@ -116,22 +104,27 @@ fn ply(bytes: &[u8]) -> Result<Soup> {
     let mut numbers = Numbers { rest: body.split_once_str("\n").map_or(body, |(_, rest)| rest), order };
     let kind = |name| if order == Order::Text { Ok(DOUBLE) } else { Kind::named(name) };
     let (mut points, mut polygons) = (Vec::new(), Vec::new());
-    for (name, count, properties) in elements {
+    for (element, count, properties) in elements {
         // Elements without properties take no bytes.
         for _ in 0..if properties.is_empty() { 0 } else { count } {
             let mut point = [0.0; 3];
-            for &(length, of, property) in &properties {
-                let count = length.map_or(Ok(1.0), |length| numbers.next(kind(length)?))?;
-                let list: Vec<f64> = numbers.list(kind(of)?, count as i64)?;
-                match (length, ["x", "y", "z"].iter().position(|&axis| axis == property)) {
-                    (None, Some(axis)) => point[axis] = list[0],
-                    (Some(_), _) if name == "face" && property.starts_with("vert") => {
-                        polygons.push(list.iter().map(|&v| v as i64).collect());
+            for (kinds, property) in &properties {
+                match (&kinds[..], *property) {
+                    (["list", length, of], name) => {
+                        let count = numbers.next::<f64>(kind(length)?)?;
+                        let list: Vec<f64> = numbers.list(kind(of)?, count as i64)?;
+                        if element == "face" && name.starts_with("vert") {
+                            polygons.push(list.iter().map(|&v| v as i64).collect());
+                        }
                     }
-                    _ => {}
+                    ([of], "x") => point[0] = numbers.next(kind(of)?)?,
+                    ([of], "y") => point[1] = numbers.next(kind(of)?)?,
+                    ([of], "z") => point[2] = numbers.next(kind(of)?)?,
+                    ([of], _) => drop(numbers.next::<f64>(kind(of)?)?),
+                    (_, name) => bail!("the property '{name}' has no type"),
                 }
             }
-            if name == "vertex" {
+            if element == "vertex" {
                 points.push(point);
             }
         }
