@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 use crate::space::{Bounds, Point};
+use itertools::Itertools as _;
 use rstar::Envelope as _;
 
 /// Checks the boundary, and compares it with the expectation of the file.
@@ -62,42 +63,35 @@ pub fn edges(faces: &[[u32; 3]]) -> Vec<Edge> {
         let (ends, corners) = if is_reversed { ([b, a], [to, from]) } else { ([a, b], [from, to]) };
         Edge { ends, is_reversed, face: from / 3, corners }
     };
-    let mut edges: Vec<Edge> = (0..vertices.len() as u32).map(edge).collect();
-    edges.sort_unstable_by_key(|edge| (edge.ends, edge.corners));
-    edges
+    (0..vertices.len() as u32).map(edge).sorted_unstable_by_key(|edge| (edge.ends, edge.corners)).collect()
 }
 
 /// Vertices whose faces form more than one fan.
 fn several_fans(faces: &[[u32; 3]], fans: Sets) -> Vec<u32> {
     let (fan, _) = fans.numbered();
-    let mut at: Vec<(u32, u32)> = faces.as_flattened().iter().copied().zip(fan).collect();
-    at.sort_unstable();
-    at.dedup();
-    at.chunk_by(|a, b| a.0 == b.0).filter(|fans| fans.len() > 1).map(|fans| fans[0].0).collect()
+    let at = faces.as_flattened().iter().copied().zip(fan).sorted_unstable().dedup();
+    at.map(|(vertex, _)| vertex).dedup_with_count().filter(|(count, _)| *count > 1).map(|(_, vertex)| vertex).collect()
 }
 
 /// Checks the genus of each component. Surfaces are lists of faces.
 fn genera(mesh: &Mesh, boundary: &Boundary, surfaces: &[Vec<u32>], report: &mut Report) {
     let genus = |surface: &Vec<u32>| {
-        let mut vertices: Vec<u32> = surface.iter().flat_map(|&i| boundary.faces[i as usize]).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
+        let vertices = surface.iter().flat_map(|&i| boundary.faces[i as usize]).sorted_unstable().dedup().count();
         // The Euler characteristic is 2 - 2g. Each face has a half of three edges.
-        (4 + surface.len() as i64 - 2 * vertices.len() as i64) / 4
+        (4 + surface.len() as i64 - 2 * vertices as i64) / 4
     };
     let genera: Vec<i64> = surfaces.iter().map(genus).collect();
     report.figures.genus = genera.iter().sum();
-    let Some(mut expected) = mesh.expected_loops.clone() else { return };
+    let Some(expected) = &mesh.expected_loops else { return };
+    let expected = expected.iter().copied().sorted_unstable().collect_vec();
     let mut found: Vec<Vec<i64>> = vec![Vec::new(); report.figures.components];
     for (surface, &genus) in surfaces.iter().zip(&genera) {
         found[boundary.component[surface[0] as usize] as usize].push(genus);
     }
     let others = found.iter().map(Vec::len).enumerate().filter(|(_, count)| *count != 1);
-    let mut violations: Vec<String> =
-        others.map(|(component, count)| format!("component {component} has {count} boundary surfaces")).collect();
-    let mut found = found.concat();
-    found.sort_unstable();
-    expected.sort_unstable();
+    let several = |(component, count)| format!("component {component} has {count} boundary surfaces");
+    let mut violations = others.map(several).collect_vec();
+    let found = found.concat().into_iter().sorted_unstable().collect_vec();
     if violations.is_empty() && found != expected {
         let differs = found.iter().zip(&expected).find(|(f, e)| f != e);
         let (f, e) = differs.map_or((found.len() as i64, expected.len() as i64), |(&f, &e)| (f, e));

@@ -2,6 +2,7 @@
 
 use crate::exact::{orient_2d, orient_3d};
 use crate::space::{Bounds, Point, boxes};
+use itertools::Itertools as _;
 
 /// Returns the pairs of triangles that intersect outside their common vertices and edges. Degenerate triangles are
 /// ignored.
@@ -9,9 +10,7 @@ pub fn crossings(points: &[Point], faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let tree = boxes(faces.iter().map(|face| Bounds::from_points(&face.map(|v| points[v as usize]))));
     let pairs = tree.intersection_candidates_with_other_tree(&tree).map(|(a, b)| [a.data, b.data]);
     let is_crossing = |&[i, j]: &[u32; 2]| i < j && intersect(points, faces[i as usize], faces[j as usize]);
-    let mut found: Vec<[u32; 2]> = pairs.filter(is_crossing).collect();
-    found.sort_unstable();
-    found
+    pairs.filter(is_crossing).sorted_unstable().collect()
 }
 
 fn intersect(points: &[Point], s: [u32; 3], t: [u32; 3]) -> bool {

@@ -52,7 +52,7 @@ fn exact(origin: &Point, triangles: &[[Point; 3]]) -> i32 {
     let least = numbers.filter(|&&x| x != 0.0).map(|x| x.integer_decode().1).min().unwrap_or(0);
     let integer = |x: f64| {
         let (mantissa, exponent, sign) = x.integer_decode();
-        BigInt::from(mantissa) * sign << (exponent - least).max(0)
+        (BigInt::from(mantissa) * sign) << (exponent - least).max(0)
     };
     let from = origin.map(integer);
     let volume = triangles.iter().map(|t| {

@@ -5,6 +5,7 @@ use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 use crate::space::{cross, dot, minus};
+use itertools::Itertools as _;
 
 /// Faces of a positive tetrahedron, oriented outwards.
 const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -63,14 +64,15 @@ fn points(mesh: &Mesh, report: &mut Report) {
     let places = mesh.points.iter().map(|p| p.map(|x| (x + 0.0).to_bits()));
     report.add(C::NoDuplicatePoints, equal_pairs(places.collect()));
     let mut used = vec![false; mesh.points.len()];
-    mesh.tets.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    for &v in mesh.tets.as_flattened() {
+        used[v as usize] = true;
+    }
     report.add(C::NoUnusedPoints, (0..used.len()).filter(|&i| !used[i]));
 }
 
 /// Pairs of numbers of equal values.
 fn equal_pairs<T: Ord + Copy>(values: Vec<T>) -> Vec<Ids<2>> {
-    let mut numbered: Vec<(T, u32)> = values.into_iter().zip(0..).collect();
-    numbered.sort_unstable();
+    let numbered = values.into_iter().zip(0_u32..).sorted_unstable().collect_vec();
     let pairs = numbered.windows(2).filter(|pair| pair[0].0 == pair[1].0);
     pairs.map(|pair| Ids([pair[0].1, pair[1].1])).collect()
 }
@@ -98,8 +100,8 @@ pub struct Sides<'a> {
 impl<'a> Sides<'a> {
     pub fn new(tets: &'a [[u32; 4]]) -> Self {
         let mut sides = Self { tets, sorted: Vec::new() };
-        sides.sorted = (0..4 * tets.len() as u32).map(|handle| (key(sides.face(handle)), handle)).collect();
-        sides.sorted.sort_unstable();
+        let side = |handle| (key(sides.face(handle)), handle);
+        sides.sorted = (0..4 * tets.len() as u32).map(side).sorted_unstable().collect();
         sides
     }
 
@@ -123,8 +125,7 @@ impl<'a> Sides<'a> {
 
 fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
     let sides = Sides::new(&mesh.tets);
-    let mut labelled: Vec<[u32; 3]> = mesh.triangles.iter().map(|&t| key(t)).collect();
-    labelled.sort_unstable();
+    let labelled = mesh.triangles.iter().map(|&t| key(t)).sorted_unstable().collect_vec();
     let mut sets = Sets::new(mesh.tets.len());
     let (mut crowded, mut one_sided, mut outer, mut labelled_inside) = (vec![], vec![], vec![], vec![]);
     for group in sides.groups() {

@@ -1,13 +1,14 @@
 //! Conditions on labelled triangles, patches and caps.
 
-use crate::boundary::edges;
+use crate::boundary::{Edge, edges};
 use crate::faces::{Boundary, is_odd, key};
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
 use crate::space::{Point, cross, dot, minus};
+use itertools::Itertools as _;
 use std::array::from_fn;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::f64::consts::PI;
 
 /// Id of the wall's patch.
@@ -46,13 +47,11 @@ fn differences(mesh: &Mesh, boundary: &Boundary) -> Vec<[u32; 3]> {
     let is_allowed = |face: &[u32; 3]| may_be_inside && boundary.labelled_inside.binary_search(face).is_ok();
     let entry = |face: [u32; 3], is_label| (key(face), is_odd(face) && !mesh.is_undirected, is_label);
     let labels = mesh.triangles.iter().map(|&face| entry(face, true)).filter(|(face, ..)| !is_allowed(face));
-    let mut all: Vec<_> = boundary.faces.iter().map(|&face| entry(face, false)).chain(labels).collect();
-    all.sort_unstable();
+    let real = boundary.faces.iter().map(|&face| entry(face, false));
+    let all = real.chain(labels).sorted_unstable().collect_vec();
     let groups = all.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
     let wrong = groups.filter(|group| !matches!(group, [(.., false), (.., true)]));
-    let mut different: Vec<[u32; 3]> = wrong.map(|group| group[0].0).collect();
-    different.dedup();
-    different
+    wrong.map(|group| group[0].0).dedup().collect()
 }
 
 fn patches(mesh: &Mesh, report: &mut Report) {
@@ -80,10 +79,8 @@ fn is_cap_name(name: &str) -> bool {
 
 /// Checks the shapes of caps, and of patches that are named like caps.
 fn caps(mesh: &Mesh, report: &mut Report) {
-    let mut triangles: HashMap<i64, Vec<[u32; 3]>> = HashMap::new();
-    for (face, label) in mesh.labelled().filter(|(_, label)| *label != WALL) {
-        triangles.entry(label).or_default().push(face);
-    }
+    let labelled = mesh.labelled().filter(|(_, label)| *label != WALL);
+    let triangles = labelled.map(|(face, label)| (label, face)).into_group_map();
     let of = |patch: i64| triangles.get(&patch).map_or(&[][..], Vec::as_slice);
     let mut violations: [Vec<String>; 5] = Default::default();
     let mut add = |holds: &[bool], place: String| {
@@ -176,15 +173,13 @@ fn discs(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
 
 /// True if triangles that are connected by edges form a disc: an oriented surface with a rim and the Euler number 1.
 fn is_disc(triangles: &[[u32; 3]]) -> bool {
-    let (mut count, mut has_rim, mut is_surface) = (0, false, true);
-    for group in edges(triangles).chunk_by(|a, b| a.ends == b.ends) {
-        count += 1;
-        match group {
-            [_] => has_rim = true,
-            [a, b] => is_surface &= a.is_reversed != b.is_reversed,
-            _ => is_surface = false,
-        }
-    }
-    let vertices: HashSet<u32> = triangles.iter().flatten().copied().collect();
-    is_surface && has_rim && vertices.len() + triangles.len() == count + 1
+    let edges = edges(triangles);
+    let groups = || edges.chunk_by(|a, b| a.ends == b.ends);
+    let is_sound = |group: &[Edge]| match group {
+        [a, b] => a.is_reversed != b.is_reversed,
+        _ => group.len() == 1,
+    };
+    let has_rim = groups().any(|group| group.len() == 1);
+    let vertices = triangles.as_flattened().iter().unique().count();
+    groups().all(is_sound) && has_rim && vertices + triangles.len() == groups().count() + 1
 }

@@ -8,6 +8,7 @@ use crate::report::{Condition, Report};
 use crate::space::{Bounds, Point, boxes, dot, minus};
 use crate::xml::VtkFile;
 use anyhow::{Context as _, Result, bail, ensure};
+use itertools::Itertools as _;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -108,7 +109,7 @@ fn vtp(bytes: &[u8]) -> Result<Vec<Cone>> {
 pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
     let (wall, caps): (Vec<_>, Vec<_>) = mesh.labelled().partition(|(_, label)| *label == WALL);
     let vertices = |own: Vec<([u32; 3], i64)>| own.into_iter().flat_map(|(face, _)| face);
-    let (mut wall, mut on_caps): (Vec<u32>, HashSet<u32>) = (vertices(wall).collect(), vertices(caps).collect());
+    let (mut wall, mut on_caps) = (vertices(wall).collect_vec(), vertices(caps).collect::<HashSet<u32>>());
     // Without labels, every boundary vertex belongs to the wall, except those in the plane of a cap and near it.
     if mesh.triangles.is_empty() {
         let is_on = |p: &Point, cap: &Cap| {
@@ -116,11 +117,9 @@ pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, r
             let height = dot(from, cap.normal).abs();
             height <= 1e-6 * cap.radius && dot(from, from) <= 2.0 * cap.radius * cap.radius
         };
-        wall = boundary.faces.as_flattened().to_vec();
+        wall.extend(boundary.faces.as_flattened());
         on_caps.extend(wall.iter().filter(|&&v| mesh.caps.iter().any(|cap| is_on(&mesh.points[v as usize], cap))));
     }
-    wall.sort_unstable();
-    wall.dedup();
     let tree = boxes(cones.iter().map(|cone| cone.bounds(tolerance)));
     let is_far = |&v: &u32| {
         let Some(point) = mesh.points.get(v as usize) else { return true };
@@ -129,7 +128,10 @@ pub fn check(cones: &[Cone], tolerance: f64, mesh: &Mesh, boundary: &Boundary, r
         let nearest = distances.min_by(|a, b| a[0].total_cmp(&b[0]));
         nearest.is_none_or(|[distance, radius]| distance.abs() > tolerance * radius)
     };
-    report.add(Condition::WallDistance, wall.into_iter().filter(|v| !on_caps.contains(v)).filter(is_far));
+    report.add(
+        Condition::WallDistance,
+        wall.into_iter().sorted_unstable().dedup().filter(|v| !on_caps.contains(v)).filter(is_far),
+    );
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Conditions of a valid mesh, and the violations of a file.
 
+use itertools::Itertools as _;
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::{self, Display};
 
@@ -106,7 +108,7 @@ pub struct Outcome {
 }
 
 /// Sizes of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Figures {
     /// Number of points.
     pub points: usize,
@@ -120,16 +122,6 @@ pub struct Figures {
     pub genus: i64,
     /// Volume in the cube of the file's unit.
     pub volume: f64,
-}
-
-impl Figures {
-    /// JSON object, also of certificates.
-    pub(crate) fn to_json(self) -> Value {
-        json!({
-            "points": self.points, "tets": self.tets, "boundary_faces": self.boundary_faces,
-            "components": self.components, "genus": self.genus, "volume": self.volume,
-        })
-    }
 }
 
 /// Result of all conditions that could be checked.
@@ -190,7 +182,7 @@ impl Report {
     /// JSON object with all conditions.
     pub fn to_json(&self) -> Value {
         let condition = |o: &Outcome| json!({"name": o.condition.name(), "violations": o.count, "first": o.first});
-        let mut json = self.figures.to_json();
+        let mut json = json!(self.figures);
         json["valid"] = self.is_valid().into();
         json["conditions"] = self.outcomes.iter().map(condition).collect();
         json
@@ -205,8 +197,7 @@ impl Display for Report {
             write!(out, "valid: tetrahedra {tets}, boundary faces {boundary_faces}, components {components}, ")?;
             return write!(out, "genus {genus}, conditions {}", self.outcomes.len());
         }
-        let violated: Vec<String> = self.violated().map(ToString::to_string).collect();
-        write!(out, "NOT valid: {}", violated.join("; "))
+        write!(out, "NOT valid: {}", self.violated().join("; "))
     }
 }
 
@@ -223,6 +214,6 @@ pub(crate) struct Ids<const N: usize>(pub [u32; N]);
 
 impl<const N: usize> Display for Ids<N> {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str(&self.0.map(|id| id.to_string()).join(" "))
+        out.write_str(&self.0.iter().join(" "))
     }
 }
