@@ -40,8 +40,7 @@ pub fn check(mesh: &Mesh, report: &mut Report) -> Option<Boundary> {
 }
 
 fn cells(mesh: &Mesh, report: &mut Report) {
-    let mut sorted = mesh.tets.clone();
-    sorted.iter_mut().for_each(|t| t.sort_unstable());
+    let sorted = mesh.tets.iter().map(|&t| key(t)).collect_vec();
     let is_repeated = |t: &[u32; 4]| t.windows(2).any(|pair| pair[0] == pair[1]);
     report.add(C::NoRepeatedVertex, (0..sorted.len()).filter(|&i| is_repeated(&sorted[i])));
     report.add(C::NoDuplicateTets, equal_pairs(sorted));
@@ -78,9 +77,9 @@ fn equal_pairs<T: Ord + Copy>(values: Vec<T>) -> Vec<Ids<2>> {
 }
 
 /// Vertices in ascending order.
-pub fn key(mut face: [u32; 3]) -> [u32; 3] {
-    face.sort_unstable();
-    face
+pub fn key<const N: usize>(mut vertices: [u32; N]) -> [u32; N] {
+    vertices.sort_unstable();
+    vertices
 }
 
 /// True if sorting the vertices of a triangle is an odd permutation.

@@ -27,7 +27,7 @@ pub struct VtkFile<'a> {
     pub pieces: usize,
     attributes: Attributes,
     arrays: Vec<Array<'a>>,
-    appended: &'a [u8],
+    appended: Option<&'a [u8]>,
     is_base64: bool,
 }
 
@@ -43,7 +43,7 @@ impl<'a> VtkFile<'a> {
         let (mut file, mut open, mut reader) = (Self::default(), Vec::<String>::new(), Reader::from_reader(bytes));
         let config = reader.config_mut();
         (config.expand_empty_elements, config.check_end_names, config.allow_unmatched_ends) = (true, false, true);
-        while file.appended.is_empty() {
+        while file.appended.is_none() {
             match reader.read_event() {
                 Ok(Event::Start(tag)) => {
                     let section = open.last().cloned().unwrap_or_default();
@@ -63,11 +63,13 @@ impl<'a> VtkFile<'a> {
     /// Adds a tag with the bytes that follow it.
     fn add(&mut self, tag: &BytesStart, section: String, rest: &'a [u8]) -> Result<()> {
         let mut attributes = Attributes::new();
-        for attribute in tag.attributes() {
+        // The check of the crate for repeated attributes takes quadratic time.
+        for attribute in tag.attributes().with_checks(false) {
             let named = || format!("tag {}", tag.name().as_ref());
             let attribute = attribute.with_context(named)?;
-            let value = attribute.normalized_value(XmlVersion::Implicit1_0).with_context(named)?;
-            attributes.insert(attribute.key.as_ref().to_owned(), value.into_owned());
+            let (name, value) = (attribute.key.as_ref(), attribute.normalized_value(XmlVersion::Implicit1_0));
+            let known = attributes.insert(name.to_owned(), value.with_context(named)?.into_owned());
+            ensure!(known.is_none(), "{}: the attribute {name} is repeated", named());
         }
         match tag.name().as_ref() {
             "VTKFile" => self.attributes = attributes,
@@ -78,7 +80,7 @@ impl<'a> VtkFile<'a> {
             }
             "AppendedData" => {
                 self.is_base64 = attributes.get("encoding").is_some_and(|encoding| encoding != "raw");
-                self.appended = rest.split_once_str("_").map_or(&[], |(_, data)| data);
+                self.appended = Some(rest.split_once_str("_").map_or(&[], |(_, data)| data));
             }
             _ => {}
         }
@@ -120,7 +122,7 @@ impl<'a> VtkFile<'a> {
             }
             "appended" => {
                 let offset = of(&array.attributes, "offset").parse().ok();
-                let data = offset.and_then(|offset: usize| self.appended.get(offset..));
+                let data = offset.and_then(|offset: usize| self.appended?.get(offset..));
                 self.payload(data.context("its offset is beyond the file")?, self.is_base64)?
             }
             "binary" => self.payload(array.text.trim_ascii(), true)?,
