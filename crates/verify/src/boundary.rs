@@ -6,6 +6,7 @@ use crate::faces::Boundary;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::sides::{EDGES, Side, Sides};
 use crate::space::{Bounds, Point};
 use itertools::Itertools as _;
 use rstar::Envelope as _;
@@ -15,13 +16,19 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
     let faces = &boundary.faces;
     let (mut surfaces, mut fans) = (Sets::new(faces.len()), Sets::new(3 * faces.len()));
     let mut wrong = Vec::new();
-    for group in edges(faces).chunk_by(|a, b| a.ends == b.ends) {
-        for pair in group.windows(2) {
-            surfaces.join(pair[0].face, pair[1].face);
-            (0..2).for_each(|end| fans.join(pair[0].corners[end], pair[1].corners[end]));
+    let edges = Sides::new(faces, EDGES);
+    for group in edges.groups() {
+        // Corners of a face at both ends of an edge, that of the smaller vertex first.
+        let ends = |side: &Side<2>| {
+            let (from, to) = (side.1, side.1 / 3 * 3 + (side.1 + 1) % 3);
+            if edges.is_odd(side) { [to, from] } else { [from, to] }
+        };
+        for (a, b) in group.iter().tuple_windows() {
+            surfaces.join(a.1 / 3, b.1 / 3);
+            std::iter::zip(ends(a), ends(b)).for_each(|(a, b)| fans.join(a, b));
         }
-        if group.len() != 2 || group[0].is_reversed == group[1].is_reversed {
-            wrong.push(Ids(group[0].ends));
+        if group.len() != 2 || edges.is_odd(&group[0]) == edges.is_odd(&group[1]) {
+            wrong.push(Ids(group[0].0));
         }
     }
     report.add(C::BoundaryEdges, wrong);
@@ -39,31 +46,6 @@ pub fn check(mesh: &Mesh, boundary: &Boundary, report: &mut Report) {
             nesting(mesh, boundary, &surfaces, report);
         }
     }
-}
-
-/// Side of a triangle.
-pub struct Edge {
-    /// Smaller and larger vertex.
-    pub ends: [u32; 2],
-    /// True if the triangle passes from the larger to the smaller vertex.
-    pub is_reversed: bool,
-    /// Number of the triangle.
-    pub face: u32,
-    /// Corners of the triangle at both ends.
-    corners: [u32; 2],
-}
-
-/// Sides of triangles, sorted by their ends.
-pub fn edges(faces: &[[u32; 3]]) -> Vec<Edge> {
-    let vertices = faces.as_flattened();
-    let edge = |from: u32| {
-        let to = from / 3 * 3 + (from + 1) % 3;
-        let [a, b] = [from, to].map(|corner| vertices[corner as usize]);
-        let is_reversed = a > b;
-        let (ends, corners) = if is_reversed { ([b, a], [to, from]) } else { ([a, b], [from, to]) };
-        Edge { ends, is_reversed, face: from / 3, corners }
-    };
-    (0..vertices.len() as u32).map(edge).sorted_unstable_by_key(|edge| (edge.ends, edge.corners)).collect()
 }
 
 /// Vertices whose faces form more than one fan.

@@ -4,11 +4,9 @@ use crate::exact::orient_3d;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::sides::{FACES, Sides, key};
 use crate::space::{cross, dot, minus};
 use itertools::Itertools as _;
-
-/// Faces of a positive tetrahedron, oriented outwards.
-const SIDES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Faces of exactly one tetrahedron.
 pub struct Boundary {
@@ -76,63 +74,16 @@ fn equal_pairs<T: Ord + Copy>(values: Vec<T>) -> Vec<Ids<2>> {
     pairs.map(|pair| Ids([pair[0].1, pair[1].1])).collect()
 }
 
-/// Vertices in ascending order.
-pub fn key<const N: usize>(mut vertices: [u32; N]) -> [u32; N] {
-    vertices.sort_unstable();
-    vertices
-}
-
-/// True if sorting the vertices of a triangle is an odd permutation.
-pub fn is_odd(face: [u32; 3]) -> bool {
-    (face[0] > face[1]) ^ (face[0] > face[2]) ^ (face[1] > face[2])
-}
-
-/// Side of a tetrahedron: its sorted vertices, and four times the number of the tetrahedron plus that of the side.
-pub type Side = ([u32; 3], u32);
-
-/// Sides of all tetrahedra, sorted.
-pub struct Sides<'a> {
-    tets: &'a [[u32; 4]],
-    sorted: Vec<Side>,
-}
-
-impl<'a> Sides<'a> {
-    pub fn new(tets: &'a [[u32; 4]]) -> Self {
-        let mut sides = Self { tets, sorted: Vec::new() };
-        let side = |handle| (key(sides.face(handle)), handle);
-        sides.sorted = (0..4 * tets.len() as u32).map(side).sorted_unstable().collect();
-        sides
-    }
-
-    /// Vertices of a side, oriented outwards.
-    pub fn face(&self, handle: u32) -> [u32; 3] {
-        SIDES[handle as usize % 4].map(|i| self.tets[handle as usize / 4][i])
-    }
-
-    /// Sides with the same vertices, in ascending order.
-    pub fn groups(&self) -> impl Iterator<Item = &[Side]> {
-        self.sorted.chunk_by(|a, b| a.0 == b.0)
-    }
-
-    /// Sides with the vertices of a triangle.
-    pub fn of(&self, triangle: [u32; 3]) -> &[Side] {
-        let key = key(triangle);
-        let from = &self.sorted[self.sorted.partition_point(|side| side.0 < key)..];
-        &from[..from.partition_point(|side| side.0 == key)]
-    }
-}
-
 fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
-    let sides = Sides::new(&mesh.tets);
+    let sides = Sides::new(&mesh.tets, FACES);
     let labelled = mesh.triangles.iter().map(|&t| key(t)).sorted_unstable().collect_vec();
     let mut sets = Sets::new(mesh.tets.len());
     let (mut crowded, mut one_sided, mut outer, mut labelled_inside) = (vec![], vec![], vec![], vec![]);
     for group in sides.groups() {
         group.windows(2).for_each(|pair| sets.join(pair[0].1 / 4, pair[1].1 / 4));
-        let odd = |side: &Side| is_odd(sides.face(side.1));
         match group {
             [(_, only)] => outer.push(*only),
-            [first, second] if odd(first) == odd(second) => one_sided.push(first.0),
+            [first, second] if sides.is_odd(first) == sides.is_odd(second) => one_sided.push(first.0),
             [_, _] => {}
             _ => crowded.push(group[0].0),
         }
@@ -146,24 +97,8 @@ fn faces(mesh: &Mesh, report: &mut Report) -> Boundary {
     outer.sort_unstable();
     (report.figures.components, report.figures.boundary_faces) = (count as usize, outer.len());
     Boundary {
-        faces: outer.iter().map(|&handle| sides.face(handle)).collect(),
+        faces: outer.iter().map(|&handle| sides.vertices(handle)).collect(),
         component: outer.iter().map(|&handle| component[handle as usize / 4]).collect(),
         labelled_inside,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::is_odd;
-
-    #[test]
-    fn orders_of_vertices_are_odd_or_even() {
-        assert_eq!([[1, 2, 3], [2, 3, 1], [3, 1, 2]].map(is_odd), [false; 3]);
-        assert_eq!([[1, 3, 2], [3, 2, 1], [2, 1, 3]].map(is_odd), [true; 3]);
-        // Equal vertices keep their order.
-        assert_eq!(
-            [[1, 1, 2], [2, 1, 2], [1, 2, 1], [1, 2, 2], [1, 1, 1]].map(is_odd),
-            [false, true, true, false, false]
-        );
     }
 }

@@ -1,10 +1,10 @@
 //! Conditions on labelled triangles, patches and caps.
 
-use crate::boundary::{Edge, edges};
-use crate::faces::{Boundary, is_odd, key};
+use crate::faces::Boundary;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
 use crate::sets::Sets;
+use crate::sides::{EDGES, Side, Sides, is_odd, key};
 use crate::space::{Point, cross, dot, minus};
 use itertools::Itertools as _;
 use std::array::from_fn;
@@ -164,22 +164,21 @@ impl Shape {
 /// Parts of triangles that are connected by edges.
 fn discs(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
     let mut sets = Sets::new(triangles.len());
-    let edges = edges(triangles);
-    let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
-    pairs.for_each(|pair| sets.join(pair[0].face, pair[1].face));
+    for (a, b) in Sides::new(triangles, EDGES).groups().flat_map(|group| group.iter().tuple_windows()) {
+        sets.join(a.1 / 3, b.1 / 3);
+    }
     let triangle = |i: u32| triangles[i as usize];
     sets.groups().into_iter().map(|part| part.into_iter().map(triangle).collect()).collect()
 }
 
 /// True if triangles that are connected by edges form a disc: an oriented surface with a rim and the Euler number 1.
 fn is_disc(triangles: &[[u32; 3]]) -> bool {
-    let edges = edges(triangles);
-    let groups = || edges.chunk_by(|a, b| a.ends == b.ends);
-    let is_sound = |group: &[Edge]| match group {
-        [a, b] => a.is_reversed != b.is_reversed,
+    let edges = Sides::new(triangles, EDGES);
+    let is_sound = |group: &[Side<2>]| match group {
+        [a, b] => edges.is_odd(a) != edges.is_odd(b),
         _ => group.len() == 1,
     };
-    let has_rim = groups().any(|group| group.len() == 1);
+    let has_rim = edges.groups().any(|group| group.len() == 1);
     let vertices = triangles.as_flattened().iter().unique().count();
-    groups().all(is_sound) && has_rim && vertices + triangles.len() == groups().count() + 1
+    edges.groups().all(is_sound) && has_rim && vertices + triangles.len() == edges.groups().count() + 1
 }

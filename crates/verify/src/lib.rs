@@ -25,6 +25,7 @@ mod numbers;
 mod regions;
 mod report;
 mod sets;
+mod sides;
 mod space;
 mod surface;
 mod tetgen;

@@ -1,9 +1,9 @@
 //! Meshes with regions: each region is a mesh of its own, and faces between regions are labelled.
 
-use crate::faces::{Side, Sides, is_odd, key};
 use crate::labels::WALL;
 use crate::mesh::Mesh;
 use crate::report::{Condition as C, Ids, Report};
+use crate::sides::{FACES, is_odd, key};
 use std::collections::HashSet;
 
 /// Name of the region to which the expectation of a file applies.
@@ -11,9 +11,12 @@ pub const LUMEN: &str = "lumen";
 /// Beginning of the names of interface patches.
 const INTERFACE: &str = "interface_";
 
+type Side = crate::sides::Side<3>;
+type Sides<'a> = crate::sides::Sides<'a, 3, 4>;
+
 /// Checks each region with `check`, and the labels of interfaces. Indices must be in range.
 pub fn verify(mesh: &Mesh, report: &mut Report, check: impl Fn(&Mesh) -> Report) {
-    let sides = Sides::new(&mesh.tets);
+    let sides = Sides::new(&mesh.tets, FACES);
     interfaces(mesh, &sides, report);
     let is_named = |tet: &usize| mesh.regions.iter().any(|(id, _)| *id == mesh.region_of(*tet));
     let outside = (0..mesh.tets.len()).filter(|tet| !is_named(tet)).map(|tet| format!("tetrahedron {tet}"));
@@ -51,7 +54,7 @@ fn interfaces(mesh: &Mesh, sides: &Sides, report: &mut Report) {
         let mut add = |is_wrong: bool| wrong.extend(is_wrong.then(|| format!("{} of patch {label}", Ids(triangle))));
         add((own.len() == 2 && pair.is_none()) || (named.is_some() && named != pair));
         if let Some([smaller, _]) = pair {
-            let is_out = |side: &Side| region(mesh, side) == smaller && is_odd(sides.face(side.1)) == is_odd(triangle);
+            let is_out = |side: &Side| region(mesh, side) == smaller && sides.is_odd(side) == is_odd(triangle);
             add(!labelled.insert(key(triangle)) || !(mesh.is_undirected || own.iter().any(is_out)));
         }
     }
@@ -95,7 +98,7 @@ fn part(mesh: &Mesh, sides: &Sides, id: i64, is_lumen: bool) -> Mesh {
         let own: Vec<&Side> = all.iter().filter(|side| region(mesh, side) == id).collect();
         let [side] = own[..] else { continue };
         // The direction of an interface is checked with the others.
-        let face = if all.len() == 2 { sides.face(side.1) } else { triangle };
+        let face = if all.len() == 2 { sides.vertices(side.1) } else { triangle };
         part.triangles.push(face.map(|v| numbers[v as usize]));
         let has_cap = mesh.caps.iter().any(|cap| cap.patch == label);
         let is_wall = !has_cap && mesh.patch_name(label).starts_with(INTERFACE);

@@ -1,9 +1,10 @@
 //! Readers of triangle surfaces (OFF, STL, PLY in text or binary), and the condition that a mesh keeps one.
 
-use crate::faces::{Boundary, key};
+use crate::faces::Boundary;
 use crate::mesh::Mesh;
 use crate::numbers::{DOUBLE, Kind, LONG, Numbers, Order};
 use crate::report::{Condition, Report};
+use crate::sides::key;
 use crate::space::Point;
 use anyhow::{Context as _, Result, bail, ensure};
 use bstr::ByteSlice as _;
