@@ -9,6 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use std::collections::HashMap;
 use std::io::Read as _;
+use std::rc::Rc;
 
 /// Decoder of base64 with or without padding.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -32,7 +33,7 @@ pub struct VtkFile<'a> {
 }
 
 struct Array<'a> {
-    section: String,
+    section: Rc<str>,
     attributes: Attributes,
     text: &'a [u8],
 }
@@ -40,7 +41,7 @@ struct Array<'a> {
 impl<'a> VtkFile<'a> {
     /// Finds the arrays of a file.
     pub fn parse(bytes: &'a [u8]) -> Result<Self> {
-        let (mut file, mut open, mut reader) = (Self::default(), Vec::<String>::new(), Reader::from_reader(bytes));
+        let (mut file, mut open, mut reader) = (Self::default(), Vec::<Rc<str>>::new(), Reader::from_reader(bytes));
         let config = reader.config_mut();
         (config.expand_empty_elements, config.check_end_names, config.allow_unmatched_ends) = (true, false, true);
         while file.appended.is_none() {
@@ -48,7 +49,7 @@ impl<'a> VtkFile<'a> {
                 Ok(Event::Start(tag)) => {
                     let section = open.last().cloned().unwrap_or_default();
                     file.add(&tag, section, &bytes[reader.buffer_position() as usize..])?;
-                    open.push(tag.name().as_ref().to_owned());
+                    open.push(tag.name().as_ref().into());
                 }
                 Ok(Event::End(_)) => drop(open.pop()),
                 Ok(Event::Eof) => break,
@@ -61,7 +62,7 @@ impl<'a> VtkFile<'a> {
     }
 
     /// Adds a tag with the bytes that follow it.
-    fn add(&mut self, tag: &BytesStart, section: String, rest: &'a [u8]) -> Result<()> {
+    fn add(&mut self, tag: &BytesStart, section: Rc<str>, rest: &'a [u8]) -> Result<()> {
         let mut attributes = Attributes::new();
         // The check of the crate for repeated attributes takes quadratic time.
         for attribute in tag.attributes().with_checks(false) {
@@ -94,14 +95,14 @@ impl<'a> VtkFile<'a> {
 
     /// Names of the arrays of a section.
     pub fn names(&self, section: &str) -> Vec<&str> {
-        let own = self.arrays.iter().filter(|array| array.section == section);
+        let own = self.arrays.iter().filter(|array| &*array.section == section);
         own.filter_map(|array| array.attributes.get("Name").map(String::as_str)).collect()
     }
 
     /// Numbers of an array; `None` if the section has none of this name. An empty name is any name.
     pub fn array<T: Number>(&self, section: &str, name: &str) -> Result<Option<Vec<T>>> {
         let is_meant = |a: &&Array| {
-            a.section == section && (name.is_empty() || a.attributes.get("Name").is_some_and(|n| n == name))
+            &*a.section == section && (name.is_empty() || a.attributes.get("Name").is_some_and(|n| n == name))
         };
         let numbers = self.arrays.iter().find(is_meant).map(|array| self.decode(array)).transpose();
         numbers.with_context(|| format!("array '{name}' of {section}"))
