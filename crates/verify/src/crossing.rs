@@ -15,27 +15,30 @@ pub fn crossings(points: &[Point], faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
 
 fn intersect(points: &[Point], s: [u32; 3], t: [u32; 3]) -> bool {
     let at = |v: u32| &points[v as usize];
-    let (Some(s_axes), Some(t_axes)) = (axes(s.map(at)), axes(t.map(at))) else { return false };
+    let have_area = || [s, t].iter().all(|face| axes(face.map(at)).is_some());
     let is_common = |v: &u32| s.contains(v) && t.contains(v);
     let common: Vec<u32> = s.into_iter().filter(is_common).collect();
     match common[..] {
         // Beyond a common vertex, the first exit is through the opposite side of one triangle.
         [] | [_] => {
-            let any_meets = |from: [u32; 3], to: [u32; 3], axes| {
+            let any_meets = |from: [u32; 3], to: [u32; 3]| {
                 let sides = [[0, 1], [1, 2], [2, 0]].map(|side| side.map(|i| from[i]));
-                let free = sides.iter().filter(|side| !side.iter().any(is_common));
-                free.into_iter().any(|side| meets(side.map(at), to.map(at), axes))
+                let mut free = sides.into_iter().filter(|side| !side.iter().any(is_common));
+                free.any(|side| meets(side.map(at), to.map(at)))
             };
-            any_meets(s, t, t_axes) || any_meets(t, s, s_axes)
+            (any_meets(s, t) || any_meets(t, s)) && have_area()
         }
         // Beyond a common edge, only triangles folded onto each other intersect.
         [u, v] => {
             let apex = |face: [u32; 3]| at(face.into_iter().find(|w| !is_common(w)).unwrap_or(u));
             let (p, q) = (apex(s), apex(t));
-            let turn = |r: &Point| orient_2d(flat(at(u), s_axes), flat(at(v), s_axes), flat(r, s_axes));
-            orient_3d(at(u), at(v), p, q) == 0 && turn(p) == turn(q)
+            let is_folded = |axes| {
+                let turn = |r: &Point| orient_2d(flat(at(u), axes), flat(at(v), axes), flat(r, axes));
+                turn(p) == turn(q)
+            };
+            orient_3d(at(u), at(v), p, q) == 0 && have_area() && axes(s.map(at)).is_some_and(is_folded)
         }
-        _ => true,
+        _ => have_area(),
     }
 }
 
@@ -53,14 +56,15 @@ fn flat(p: &Point, axes: [usize; 2]) -> [f64; 2] {
 }
 
 /// True if a segment and a triangle have a common point.
-fn meets([p, q]: [&Point; 2], t: [&Point; 3], axes: [usize; 2]) -> bool {
+fn meets([p, q]: [&Point; 2], t: [&Point; 3]) -> bool {
     let [a, b, c] = t;
     let (above, below) = (orient_3d(a, b, c, p), orient_3d(a, b, c, q));
     if above * below > 0 {
         return false;
     }
     if above == 0 && below == 0 {
-        return meets_in_plane([p, q].map(|p| flat(p, axes)), t.map(|p| flat(p, axes)));
+        let in_plane = |axes| meets_in_plane([p, q].map(|p| flat(p, axes)), t.map(|p| flat(p, axes)));
+        return axes(t).is_some_and(in_plane);
     }
     let turns = [orient_3d(p, q, a, b), orient_3d(p, q, b, c), orient_3d(p, q, c, a)];
     turns.iter().all(|&turn| turn >= 0) || turns.iter().all(|&turn| turn <= 0)
