@@ -36,6 +36,11 @@ fn connectors_keep_away_from_places_with_shorter_edges() {
         let [lo, hi] = [-1.0, 1.0].map(|sign| station.arc + sign * station.reach());
         assert!(explicit.cut_arcs.iter().all(|&[from, to]| to <= lo || hi <= from), "{:?}", explicit.cut_arcs);
     }
+    // The planes lie beside the first and the last station.
+    let reach = |sign: f64| stations.iter().map(move |station| sign * station.arc + station.reach());
+    let [first, last] = [-1.0, 1.0].map(|sign| sign * reach(sign).fold(f64::NEG_INFINITY, f64::max));
+    let [[_, before], [after, _]] = explicit.cut_arcs[..] else { panic!("two cuts") };
+    assert!((before - first).abs() < 1e-9 && (after - last).abs() < 1e-9, "{:?}", explicit.cut_arcs);
     // Every station is in the cluster of its piece.
     for piece in explicit.pieces.iter().filter(|piece| piece.branch == BranchId(0)) {
         let inside = stations.iter().filter(|station| piece.arc[0] <= station.arc && station.arc <= piece.arc[1]);
@@ -181,6 +186,25 @@ fn layouts_with_other_overruns_or_skeletons_have_nothing_in_common() {
     assert_eq!(count(&with(&network, 1.0)), [2, 1]);
     assert_eq!(count(&with(&network, 1.5)), [0, 0]);
     assert_eq!(count(&with(&Arc::new(h_shape(30.0)), 1.0)), [0, 0]);
+}
+
+#[test]
+fn clusters_without_a_node_are_found_after_those_of_other_vessels_are_gone() {
+    // Two vessels with several connectors each, and clusters between them.
+    let ends = [[0.0; 3], [1000.0, 0.0, 0.0], [0.0, 50.0, 0.0], [1000.0, 50.0, 0.0]];
+    let network = Arc::new(skeleton(&ends.map(|p| (p, 1.0)), &[[0, 1], [2, 3]]));
+    let uncut = |branches: &[u32]| {
+        let forbidden_cuts = branches.iter().map(|&branch| BranchId(branch)).collect();
+        lay_out(&network, &PartitionParams { forbidden_cuts, ..PartitionParams::default() }, &()).expect("a layout")
+    };
+    let (both, second) = (uncut(&[]), uncut(&[0]));
+    assert!(second.cuts_len() > 3 && both.cuts_len() == 2 * second.cuts_len());
+    // Both vessels have the same number of clusters. Without cuts, the first is one cluster.
+    let count = |same: &[Option<ClusterId>]| same.iter().flatten().count();
+    let of_vessel = both.clusters_len() / 2;
+    assert_eq!(count(&second.same_as(&both).clusters), of_vessel);
+    assert_eq!(count(&both.same_as(&second).clusters), of_vessel);
+    assert_eq!(count(&both.same_as(&both).clusters), 2 * of_vessel);
 }
 
 proptest! {

@@ -13,11 +13,17 @@ mod summary;
 mod window;
 
 #[cfg(test)]
+mod frame_tests;
+#[cfg(test)]
 mod layout_tests;
 #[cfg(test)]
 mod recorded;
 #[cfg(test)]
+mod settle_tests;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod window_tests;
 
 use std::sync::Arc;
 

@@ -144,4 +144,15 @@ mod tests {
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{hi}: {found:?}");
         }
     }
+
+    #[test]
+    fn a_path_has_4096_intervals_at_most() {
+        let mut skeleton = polyline([[0.0; 3], [8192.0, 0.0, 0.0]]);
+        skeleton.edges[0].radii = [0.5; 2];
+        let chains = skeleton.chains(&skeleton.adjacency());
+        let course = Courses { skeleton: &skeleton, chains: &chains }.get(0);
+        // Intervals of a radius instead of three quarters.
+        let found = stations(&course, [6144.0, 8192.0]);
+        assert!(found.iter().zip(1..4096).all(|(s, i)| *s == 6144.0 + 0.5 * f64::from(i)) && found.len() == 4095);
+    }
 }
