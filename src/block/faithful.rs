@@ -325,6 +325,51 @@ mod tests {
     }
 
     #[test]
+    fn vessels_that_part_and_meet_again_are_fused() {
+        // Two vessels that leave a trunk side by side, in steps of two radii.
+        let of = |apart: &[f64]| {
+            let mut points = vec![[-9.0, 0.0, 0.0], [0.0; 3]];
+            let mut edges = vec![(0, 1)];
+            for side in [-0.5, 0.5] {
+                let mut last = 1;
+                for (i, y) in apart.iter().enumerate() {
+                    edges.push((last, points.len() as u32));
+                    last = points.len() as u32;
+                    points.push([2.0 * (i as f64 + 1.0), side * y, 0.0]);
+                }
+            }
+            let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
+            let skeleton = network(&points, 1.0, &edges);
+            fused_by_field(&partition(&skeleton, &params).expect("a partition").clusters[0], 0.35, &Watch::NOBODY)
+                .unwrap()
+        };
+        // The gap between them has 0.4 radii.
+        let [p, q] = of(&[1.0, 1.7, 2.4, 2.4, 2.4, 2.4, 1.7, 1.0, 1.0, 1.0]).expect("they are fused");
+        assert!(p.x > 12.0 && q.x > 12.0, "{p} {q}");
+        assert_eq!(of(&[1.0, 1.7, 1.7, 1.7, 1.7, 1.7, 1.7, 1.0, 1.0, 1.0]), None);
+    }
+
+    #[test]
+    fn both_legs_of_a_short_hairpin_are_one_vessel() {
+        // Legs one radius apart, of this length in radii.
+        let of = |length: u32, radius: f64| {
+            let along = (0..=2 * length).map(|i| 0.5 * f64::from(i));
+            let back = along.clone().rev().map(|x| [x, 1.0, 0.0]);
+            let points: Vec<[f64; 3]> =
+                along.map(|x| [x, 0.0, 0.0]).chain(back).map(|p| p.map(|x| x * radius)).collect();
+            let edges: Vec<(u32, u32)> = (1..points.len() as u32).map(|i| (i - 1, i)).collect();
+            let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
+            let cluster =
+                partition(&network(&points, radius, &edges), &params).expect("a partition").clusters.remove(0);
+            fused_by_field(&cluster, 0.35, &Watch::NOBODY).unwrap().is_some()
+        };
+        // They count as distant if the way from one to the other has 4.5 · 1.3 · 2 radii.
+        for radius in [0.5, 1.0, 4.0] {
+            assert_eq!([4, 5, 7, 8].map(|length| of(length, radius)), [false, false, true, true], "{radius}");
+        }
+    }
+
+    #[test]
     fn an_axis_that_leaves_the_wall_is_found() {
         let straight = cluster(&[[0.0; 3], [10.0, 0.0, 0.0], [20.0, 0.0, 0.0]]);
         let bent = cluster(&[[0.0; 3], [10.0, 1.5, 0.0], [20.0, 0.0, 0.0]]);
