@@ -84,6 +84,19 @@ mod tests {
         assert_eq!(made.certify(&more), Err(CertifyError::PointUnused { point: 100 }));
     }
 
+    #[test]
+    fn meshes_have_the_points_of_the_input() {
+        let points = points();
+        let made = delaunay_ordered(&points, &Watch::NOBODY).unwrap();
+        let count = made.complex.real_tets().count();
+        let mesh = made.into_mesh(&points);
+        assert_eq!((&mesh.points, mesh.tets.len()), (&points, count));
+        assert!(mesh.tets.iter().all(|tet| {
+            let [a, b, c, d] = tet.map(|v| &points[v as usize]);
+            anastomesh_mesh::geometry::predicates::orient3d(a, b, c, d) > 0.0
+        }));
+    }
+
     /// A broken complex is reported with the numbers of the input.
     #[test]
     fn faults_are_reported_in_the_numbers_of_the_input() {

@@ -180,6 +180,14 @@ fn without_repetition(points: Vec<Point3>) -> Vec<Point3> {
     distinct
 }
 
+/// Bounds of rounding errors grow with the size of the points.
+#[test]
+fn large_points_nearly_of_a_sphere() {
+    let points: Vec<Point3> = sphere_points().iter().step_by(4).map(|p| p * 0.7e9).collect();
+    assert!(points.len() > 30);
+    holds(&points, 1);
+}
+
 fn many<S: Strategy<Value = Point3>>(point: S, count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Point3>> {
     prop::collection::vec(point, count)
 }

@@ -1,5 +1,7 @@
 use super::perturb::in_sphere_perturbed;
 use super::*;
+use crate::complex::{Cell, NONE};
+use anastomesh_mesh::budget::Budget;
 use anastomesh_mesh::geometry::predicates::{insphere, orient3d};
 use anastomesh_mesh::progress::StopsAfter;
 use proptest::prelude::*;
@@ -182,6 +184,46 @@ fn parts_merge_to_the_whole() {
             assert_eq!(first, tets(&run(threads)));
         }
     }
+}
+
+/// As [`parts_merge_to_the_whole`], for few points.
+#[test]
+fn few_points_are_merged_from_parts() {
+    let points: Vec<Point3> = random_points(3000).iter().map(|p| Point3::new(10.0 * p.x, p.y, p.z)).collect();
+    let whole = delaunay(&points).unwrap();
+    let merged = parallel::in_parts(&points, 1000, &Watch::NOBODY).expect("worth while").into_complex(&points);
+    merged.sanity_check().unwrap();
+    assert_eq!(canonical(&whole), canonical(&merged));
+    assert!((0..points.len() as u32).all(|v| merged.verts(merged.vertex_tet(v)).contains(&v)));
+}
+
+#[test]
+fn empty_slots_receive_the_last_tetrahedra() {
+    let points = random_points(50);
+    let order: Vec<u32> = (0..50).collect();
+    let (cells, free) = insert_all(&points, &order, &Watch::NOBODY).unwrap().into_cells(&order);
+    assert!(free.is_empty());
+    let total = cells.len() as u32 + 6;
+    let empty = [8, 0, total - 1, 7, 20, total - 3];
+    let names: Vec<u32> = (0..total).filter(|t| !empty.contains(t)).collect();
+    let mut spread = vec![Cell::EMPTY; total as usize];
+    for (cell, &t) in cells.iter().zip(&names) {
+        let mates = cell.mates.map(|mate| 4 * names[(mate >> 2) as usize] + (mate & 3));
+        spread[t as usize] = Cell { verts: cell.verts, mates };
+    }
+    let compact = merge::compact(spread, empty.to_vec());
+    assert_eq!(compact.len(), cells.len());
+    let c = Complex::from_cells(points.clone(), compact, Vec::new(), vec![NONE; points.len()]);
+    c.sanity_check().unwrap();
+    assert_eq!(canonical(&c), canonical(&delaunay(&points).unwrap()));
+}
+
+#[test]
+fn each_point_counts_as_20_operations() {
+    let budget = Budget::new(u64::MAX);
+    delaunay_watched(&random_points(2000), &Watch::NOBODY.within(&budget)).unwrap();
+    // Points are counted 1024 at a time.
+    assert_eq!(budget.spent(), 2 * 1024 * 20);
 }
 
 /// No split if nearly all tetrahedra cross the cut.

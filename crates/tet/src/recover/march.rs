@@ -332,6 +332,19 @@ mod tests {
     }
 
     #[test]
+    fn a_vertex_on_the_segment_is_found_beyond_a_face() {
+        // A face between vertices 3 and 4, and 5 further on.
+        let points =
+            [[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [0.0, 0.0, -2.0], [0.0, 0.0, 2.0], [0.0, 0.0, 6.0]];
+        // The second tetrahedron, with its last vertex at each place.
+        for second in [[0, 1, 2, 4], [0, 2, 4, 1], [0, 4, 1, 2], [4, 0, 2, 1]] {
+            let tets = [[1, 0, 2, 3], second];
+            let Ok(c) = Complex::from_mesh(points.map(Point3::from).to_vec(), &tets) else { panic!("{second:?}") };
+            assert_eq!(along(&c, points[3], points[5]), ["face [0, 1, 2]", "vertex 4"], "{second:?}");
+        }
+    }
+
+    #[test]
     fn an_edge_that_pierces_a_triangle_crosses_its_plane() {
         let points: Vec<Point3> = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(f64::from)).map(Point3::from).collect();
         let c = delaunay(&points).unwrap();

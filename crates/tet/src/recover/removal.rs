@@ -180,6 +180,21 @@ mod tests {
     }
 
     #[test]
+    fn stars_of_more_than_200_tetrahedra_are_left() {
+        // The centre of a sphere has as many tetrahedra as the sphere has triangles.
+        let count = |level: usize| {
+            let surface = sphere_surface(level);
+            let mut points = surface.points;
+            points.push(anastomesh_mesh::geometry::Point3::origin());
+            let c = crate::delaunay::delaunay(&points).unwrap();
+            let center = points.len() as u32 - 1;
+            let around = Removal::default().neighbors(&c, center).map(|around| around.len());
+            (surface.triangles.len(), around)
+        };
+        assert_eq!([1, 2].map(count), [(80, Some(42)), (320, None)]);
+    }
+
+    #[test]
     fn a_point_that_holds_a_prism_stays() {
         // Schönhardt's prism has no tetrahedralization without a further point.
         let mut surface = anastomesh_mesh::TriMesh::default();

@@ -8,6 +8,7 @@ use crate::input::validate;
 use crate::plc::InputKind;
 use crate::progress::Progress;
 use crate::turned_tests::{Rng, plate, turned};
+use anastomesh_mesh::geometry::Vec3;
 use std::sync::Mutex;
 
 /// The complex of a surface's points in a box, and its edges.
@@ -71,6 +72,31 @@ fn recovered_parts_are_reported_as_progress() {
     let reports = reports.0.into_inner().unwrap();
     assert_eq!(reports[..2], [(0, all), (done, all)]);
     assert!(reports.is_sorted() && reports.iter().all(|&(done, total)| done <= total && total == all));
+}
+
+#[test]
+fn flips_that_leave_much_are_followed_by_no_points() {
+    let adds_points = |surface: &TriMesh| {
+        let (mut c, edges) = start(surface);
+        let before = c.points.len();
+        // The points need not suffice.
+        recover(&mut c, surface, &edges, Rule::Positive, &Watch::NOBODY).ok();
+        c.points.len() > before
+    };
+    // Prisms in a row, of which none is a union of tetrahedra without further points: flips leave half of the missing parts.
+    let prisms = |count: u32| {
+        let mut surface = TriMesh::default();
+        for k in 0..count {
+            let TriMesh { points, triangles } = twisted_prism(3, -0.5, 1.0);
+            let first = surface.points.len() as u32;
+            surface.points.extend(points.iter().map(|p| p + Vec3::new(5.0 * f64::from(k), 0.0, 0.0)));
+            surface.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
+        }
+        surface
+    };
+    assert_eq!([4, 120].map(|count| adds_points(&prisms(count))), [true, false]);
+    // Flips leave 166 of 1172.
+    assert!(adds_points(&plate(240, 0.2, &mut Rng(7))));
 }
 
 #[test]

@@ -282,6 +282,37 @@ impl Space {
 mod tests {
     use super::*;
 
+    /// Two tetrahedra with a common face. Vertices 0, 1, 3 and 4 lie in a plane.
+    fn pair() -> Space {
+        let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 4.0, 0.0], [1.0, 0.0, 2.0], [1.0, 0.0, -2.0]];
+        let points = points.map(Point3::from).to_vec();
+        Space::new(Complex::from_mesh(points, &[[0, 1, 2, 3], [1, 0, 2, 4]]).expect("positive tetrahedra"), 0.0)
+    }
+
+    #[test]
+    fn a_cavity_is_joined_only_to_a_vertex_off_the_planes_of_its_faces() {
+        for (apex, expected) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
+            let mut s = pair();
+            let cavity: Vec<u32> = s.c.real_tets().collect();
+            let walls = s.walls(&cavity);
+            assert_eq!(s.join(&cavity, &walls, apex), expected, "{apex}");
+            s.check();
+        }
+    }
+
+    #[test]
+    fn a_vertex_that_does_not_fit_is_forgotten() {
+        let mut s = pair();
+        let cavity: Vec<u32> = s.c.real_tets().collect();
+        let walls: Vec<[u32; 3]> = s.outer(&cavity).into_iter().map(|half| s.wall(half)).collect();
+        let at = Point3::new(1.5, 1.0, 0.0);
+        // A face is missing.
+        assert_eq!((s.fill(&cavity, &walls[1..], at), s.c.points.len()), (None, 5));
+        assert_eq!((s.fill(&cavity, &walls, at), s.c.points.len()), (Some(5), 6));
+        assert!(!s.is_implicit(5));
+        s.check();
+    }
+
     #[test]
     fn points_are_inserted_strictly_inside_a_tetrahedron() {
         let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]].map(Point3::from);

@@ -173,6 +173,34 @@ fn strategies_that_differ_in_edges_alone_fail_alike_without_edges() {
     assert_eq!(futile(&[]), [true, true, false, true, false]);
 }
 
+/// Recovery of a prism, with its first strategy.
+fn with_recovery<R>(of: impl FnOnce(ExactRecovery, RecoveryStrategy) -> R) -> R {
+    let surface = twisted_prism(3, -0.5, 1.0);
+    let edges = validate(&surface, &[], InputKind::Closed).unwrap();
+    let mut c = in_a_box(&surface);
+    let (lost_edges, lost_triangles) = survey(&mut c, &surface, &edges);
+    let missing = Missing { edges: &lost_edges, triangles: &lost_triangles };
+    of(ExactRecovery::new(c, (&surface, &edges), missing, 0.0), RecoveryStrategy::GIVEN[0])
+}
+
+#[test]
+fn a_strategy_whose_parts_took_too_long_is_repeated_with_more_operations() {
+    with_recovery(|mut recovery, way| {
+        let error = recovery.attempt(way, 0, &Watch::NOBODY).unwrap_err();
+        assert!(matches!(error, TetError::Stuck { reason: Stuck::Budget, .. }), "{error}");
+        assert!(recovery.attempt(way, 100, &Watch::NOBODY).is_ok());
+    });
+}
+
+#[test]
+fn a_recovered_complex_keeps_no_record_of_its_changes() {
+    with_recovery(|mut recovery, way| {
+        let (mut c, summary) = recovery.attempt(way, 100, &Watch::NOBODY).unwrap();
+        assert!(summary.on_segments > 0);
+        assert_eq!(c.keep_changes(), 0);
+    });
+}
+
 /// Missing parts of prisms in a row, and the error if no part may take any operation.
 fn starved(count: u32) -> (usize, Vec<[u32; 2]>, TetError) {
     let surface = row(&twisted_prism(3, -0.5, 1.0), count);
