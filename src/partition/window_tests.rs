@@ -53,3 +53,13 @@ fn pieces_are_long_by_the_radius_in_their_middle() {
     let points = [([0.0; 3], 3.0), ([6.0, 0.0, 0.0], 1.0), ([25.0, 0.0, 0.0], 1.0), ([25.0, 60.0, 0.0], 1.0)];
     assert_eq!(cut_arcs(&skeleton(&points, &[[0, 1], [1, 2], [2, 3]]), &PartitionParams::default()).len(), 2);
 }
+
+#[test]
+fn connectors_of_a_long_vessel_are_six_radii_apart() {
+    let long = skeleton(&[([0.0; 3], 2.0), ([2000.0, 0.0, 0.0], 2.0)], &[[0, 1]]);
+    let arcs = cut_arcs(&long, &PartitionParams::default());
+    // Terminals keep three radii, and a connector has 200 at most.
+    assert_eq!(arcs.len(), 5);
+    assert!(is_near(&[[arcs[0][0], arcs[4][1]]], &[[6.0, 1994.0]]), "{arcs:?}");
+    assert!(arcs.windows(2).all(|pair| (pair[1][0] - pair[0][1] - 12.0).abs() < 1e-9), "{arcs:?}");
+}
