@@ -2,9 +2,9 @@
 //!
 //! A block is meshed without knowledge of the vessels of other blocks. A web in the crotch of a bifurcation, or the facets
 //! of a thick vessel, may reach a vessel nearby. The check of the whole mesh finds this. The clusters are then meshed
-//! again with a finer grid.
+//! again with a finer grid. If their walls still meet, and vessels may fuse, theirs are meshed in one cluster.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::attempts::RetryStrategy;
 use super::blocks::{Blocks, Meetings, original_nodes};
@@ -12,7 +12,7 @@ use super::error::RunError;
 use super::estimate::cluster_cost;
 use super::report::Retry;
 use super::rounds::RunContext;
-use super::routes::Overlapping;
+use super::routes::{Overlapping, Uncut, branches_of_pairs};
 use super::seen::Seen;
 use super::whole::Whole;
 use crate::partition::{ClusterId, CutId};
@@ -25,14 +25,16 @@ use anastomesh_tet::parts::Watch;
 pub struct Apart {
     /// Intersecting blocks, once per remeshed cluster.
     met: Vec<Meetings>,
-    /// Vessels left uncut because their connectors intersected a block. As part of a cluster they can be refined.
-    uncut: BTreeSet<BranchId>,
-    /// Number of times that cures were added.
+    uncut: Uncut,
+    /// Number of times that vessels were left uncut.
     rounds: usize,
 }
 
 /// Maximum passes that leave vessels uncut because their connectors intersect another block.
 const MAX_UNCUT_PASSES: usize = 2;
+
+/// Maximum pairs of intersecting blocks that are meshed in one cluster. Where more intersect, clusters would become large.
+const MAX_JOINED: usize = 16;
 
 impl Apart {
     /// Decides how to cure intersecting blocks. Returns false if no cure is left.
@@ -53,7 +55,17 @@ impl Apart {
             connectors.map(|&i| partition.branch_of_cut(CutId(i - clusters as u32))).collect();
         if !branches.is_empty() && self.rounds < MAX_UNCUT_PASSES {
             self.rounds += 1;
-            self.uncut.extend(branches);
+            self.uncut.branches.extend(branches);
+            self.met.clear();
+            return true;
+        }
+        let is_stuck = tried || !meetings.iter().any(|pair| is_cluster(pair[0]));
+        let may_join = is_stuck && run.shop.plan.fuse && self.uncut.joined.is_empty();
+        if may_join && (1..=MAX_JOINED).contains(&meetings.len()) {
+            let count = meetings.len();
+            run.progress
+                .note(&format!("walls intersect with finer edges, too: meshed as one cluster at {count} places"));
+            self.uncut.joined = branches_of_pairs(partition, &meetings);
             self.met.clear();
             return true;
         }

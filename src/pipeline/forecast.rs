@@ -59,7 +59,7 @@ impl Forecast {
         let cells = shared_cells(clusters, plan.stretch, |i| partition.cluster(ClusterId(i)));
         let partition = partition.with_cells(cells);
         let overlaps = network.overlaps(&network.adjacency());
-        let tangled = tangled_clusters(&network, &partition, &overlaps);
+        let tangled = tangled_clusters(&network, &partition, &overlaps, &BTreeSet::new());
         let again = partition.clusters().zip(&tangled).filter(|(_, tangled)| **tangled == Tangle::Overlapping);
         let again: f64 = again.map(|(cluster, _)| cluster_cost(&cluster, plan).operations).sum();
         Ok(Self {

@@ -18,7 +18,7 @@ use super::estimate::{Estimate, TooLarge, costs_of};
 use super::make::{BlockResult, Workshop};
 use super::plan::JointStyle;
 use super::report::Retry;
-use super::routes::{Tangle, branch_pairs, tangled_clusters};
+use super::routes::{Tangle, Uncut, branch_pairs, tangled_clusters};
 use super::schedule::{Cost, costliest_first};
 use super::sizes;
 use super::store::{KeyMaker, RecordId, StoreError, fingerprint};
@@ -44,7 +44,7 @@ pub struct RunContext<'a> {
 impl RunContext<'_> {
     /// Meshes every block, and changes the partition where blocks fail.
     ///
-    /// - `uncut`: vessels that are not cut
+    /// - `uncut`: vessels that are not cut, or share a cluster
     /// - `before`: blocks of the previous partition
     /// - `fits`: receives the estimate before the first block, and may refuse it
     ///
@@ -52,12 +52,13 @@ impl RunContext<'_> {
     /// The network cannot be partitioned, or blocks cannot be stored.
     pub fn build(
         &mut self,
-        uncut: &BTreeSet<BranchId>,
+        uncut: &Uncut,
         mut before: Option<Blocks>,
         fits: &dyn Fn(&Estimate) -> Result<(), TooLarge>,
     ) -> Result<Blocks, RunError> {
-        let mut cures: BTreeMap<BranchId, Cure> = uncut.iter().map(|&branch| (branch, Cure::NotCut)).collect();
-        let together = self.together();
+        let mut cures: BTreeMap<BranchId, Cure> = uncut.branches.iter().map(|&branch| (branch, Cure::NotCut)).collect();
+        let mut together = self.together();
+        together.extend(&uncut.joined);
         let mut retries = Vec::new();
         let mut told = BTreeSet::new();
         let (mut round, mut foreseen) = (0, 0);
@@ -79,7 +80,7 @@ impl RunContext<'_> {
                     continue;
                 }
             }
-            let blocks = self.pass(partition, before)?;
+            let blocks = self.pass(partition, before, &uncut.joined)?;
             self.tell_cured(&blocks, &mut told, &mut retries);
             let may_change = round < MAX_PARTITION_CHANGES && !self.shop.store.ledger().is_hopeless();
             let found = if may_change { cure(self.shop.skeleton, &blocks, &mut cures) } else { Vec::new() };
@@ -128,9 +129,14 @@ impl RunContext<'_> {
     }
 
     /// Makes all blocks of a partition. Blocks are independent, unless joints are woven.
-    fn pass(&mut self, partition: Layout, before: Option<Blocks>) -> Result<Blocks, RunError> {
+    fn pass(
+        &mut self,
+        partition: Layout,
+        before: Option<Blocks>,
+        joined: &BTreeSet<[BranchId; 2]>,
+    ) -> Result<Blocks, RunError> {
         let shop = self.shop.among(partition.clusters_len());
-        let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps);
+        let tangled = tangled_clusters(shop.skeleton, &partition, self.overlaps, joined);
         let is_woven = shop.plan.joint == JointStyle::Woven;
         let Carried { clusters, connectors, cured, times } = Carried::over(before, &partition, &tangled, is_woven);
         let making = Making {

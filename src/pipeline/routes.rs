@@ -3,6 +3,7 @@
 use crate::partition::{CutId, Layout};
 use anastomesh_skeleton::{BranchId, EdgeId, Overlaps, Skeleton};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The branches of pairs of edges: each pair once, the lower branch first, ascending.
 pub fn branch_pairs(skeleton: &Skeleton, edges: impl Iterator<Item = [EdgeId; 2]>) -> Vec<[BranchId; 2]> {
@@ -45,9 +46,16 @@ pub enum Tangle {
 }
 
 /// Tangle of each cluster: that of vessels whose branches both run through it.
-pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Overlaps) -> Vec<Tangle> {
+/// `joined`: branches whose walls met.
+pub fn tangled_clusters(
+    skeleton: &Skeleton,
+    partition: &Layout,
+    overlaps: &Overlaps,
+    joined: &BTreeSet<[BranchId; 2]>,
+) -> Vec<Tangle> {
     let mut tangled = vec![Tangle::Free; partition.clusters_len()];
-    let meeting = branch_pairs(skeleton, overlaps.unconnected.iter().copied());
+    let mut meeting = branch_pairs(skeleton, overlaps.unconnected.iter().copied());
+    meeting.extend(joined);
     let overlapping = branch_pairs(skeleton, overlaps.pairs.iter().map(|o| o.edges));
     if meeting.is_empty() && overlapping.is_empty() {
         return tangled;
@@ -67,12 +75,48 @@ pub fn tangled_clusters(skeleton: &Skeleton, partition: &Layout, overlaps: &Over
     tangled
 }
 
+/// Vessels that are not cut because walls intersect.
+#[derive(Debug, Default)]
+pub struct Uncut {
+    /// Those whose connectors intersected a block. As part of a cluster they can be refined.
+    pub branches: BTreeSet<BranchId>,
+    /// Those that share a cluster, as their blocks intersected each other with the finest grids, too.
+    pub joined: BTreeSet<[BranchId; 2]>,
+}
+
+/// Each block with each of its branches, ascending.
+#[derive(Debug, Default)]
+struct BranchesOfBlocks(Vec<(u32, BranchId)>);
+
+impl BranchesOfBlocks {
+    fn of(partition: &Layout) -> Self {
+        let mut branches: Vec<(u32, BranchId)> = routes(partition).into_iter().map(|(b, block)| (block, b)).collect();
+        branches.sort_unstable();
+        Self(branches)
+    }
+
+    /// Pairs of branches, one of each block, the lower one first.
+    fn pairs(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = [BranchId; 2]> {
+        let of = |block: u32| {
+            let first = self.0.partition_point(|(b, _)| *b < block);
+            self.0[first..].iter().take_while(move |(b, _)| *b == block).map(|(_, branch)| *branch)
+        };
+        of(x).flat_map(move |a| of(y).map(move |b| [a.min(b), a.max(b)]))
+    }
+}
+
+/// Pairs of branches, one of each block of a pair.
+pub fn branches_of_pairs(partition: &Layout, blocks: &[[u32; 2]]) -> BTreeSet<[BranchId; 2]> {
+    let branches = BranchesOfBlocks::of(partition);
+    blocks.iter().flat_map(|pair| branches.pairs(*pair)).collect()
+}
+
 /// Pairs of blocks with branches of overlapping vessels.
 #[derive(Debug, Default)]
 pub struct Overlapping {
     pairs: Vec<[BranchId; 2]>,
-    /// Each block with each of its branches, ascending; empty when nothing overlaps.
-    branches: Vec<(u32, BranchId)>,
+    /// Empty when nothing overlaps.
+    branches: BranchesOfBlocks,
 }
 
 impl Overlapping {
@@ -82,17 +126,11 @@ impl Overlapping {
             return Self::default();
         }
         let pairs = branch_pairs(skeleton, overlaps.pairs.iter().map(|o| o.edges));
-        let mut branches: Vec<(u32, BranchId)> = routes(partition).into_iter().map(|(b, block)| (block, b)).collect();
-        branches.sort_unstable();
-        Self { pairs, branches }
+        Self { pairs, branches: BranchesOfBlocks::of(partition) }
     }
 
     /// True if these two blocks have overlapping vessels.
-    pub fn do_overlap(&self, [x, y]: [u32; 2]) -> bool {
-        let of = |block: u32| {
-            let first = self.branches.partition_point(|(b, _)| *b < block);
-            self.branches[first..].iter().take_while(move |(b, _)| *b == block).map(|(_, branch)| *branch)
-        };
-        of(x).any(|a| of(y).any(|b| self.pairs.binary_search(&[a.min(b), a.max(b)]).is_ok()))
+    pub fn do_overlap(&self, blocks: [u32; 2]) -> bool {
+        self.branches.pairs(blocks).any(|pair| self.pairs.binary_search(&pair).is_ok())
     }
 }

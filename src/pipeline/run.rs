@@ -1,6 +1,6 @@
 //! Meshing of a skeleton, up to a checked and labelled mesh.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use super::make::Workshop;
 use super::plan::{JointStyle, MeshPlan};
 use super::report::{Meeting, RunReport};
 use super::rounds::RunContext;
+use super::routes::Uncut;
 use super::seen::Seen;
 use super::store::Store;
 use super::timing::Clock;
@@ -97,7 +98,7 @@ pub(super) fn mesh_timed<'a>(
 ) -> Result<Meshed<Whole<'a>>, RunError> {
     let job = Job::of(network, plan, store, progress, clock)?;
     let mut run = job.run(clock);
-    let mut blocks = run.build(&BTreeSet::new(), None, fits)?;
+    let mut blocks = run.build(&Uncut::default(), None, fits)?;
     let mut apart = Apart::default();
     loop {
         let whole = job.numbered(&mut blocks, clock)?;

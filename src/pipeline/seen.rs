@@ -116,6 +116,7 @@ mod tests {
     use super::super::make::Workshop;
     use super::super::plan::MeshPlan;
     use super::super::rounds::RunContext;
+    use super::super::routes::Uncut;
     use super::super::store::Store;
     use super::super::tests::through_the_crotch;
     use super::super::timing::Clock;
@@ -123,8 +124,7 @@ mod tests {
     use anastomesh_flow::TerminalPatches;
     use anastomesh_mesh::geometry::{Point3, Vec3};
     use anastomesh_mesh::progress::{Progress, Stage};
-    use anastomesh_skeleton::{BranchId, Edge, Node, NodeId, Skeleton};
-    use std::collections::BTreeSet;
+    use anastomesh_skeleton::{Edge, Node, NodeId, Skeleton};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -176,7 +176,7 @@ mod tests {
         let shop = Workshop::new(&skeleton, &plan, &store);
         let mut run = RunContext { overlaps: &overlaps, shop, progress: &counts, clock: &mut clock };
         let fits = |_: &_| Ok(());
-        let first = run.build(&BTreeSet::new(), None, &fits).expect("blocks");
+        let first = run.build(&Uncut::default(), None, &fits).expect("blocks");
         let blocks = first.clusters.len() + first.connectors.len();
         assert!(blocks > 140 && counts.taken()[0] > blocks);
         let whole = Whole::new(&store, &counts, &skeleton, &first, &patches).expect("numbered");
@@ -184,9 +184,10 @@ mod tests {
         assert!(!seen.meetings.is_empty() && counts.taken()[1] > 2 * blocks);
         drop(whole);
         // The trunk of the first fork is left uncut, then cut again: numbers of all blocks but the first change.
-        let uncut: BTreeSet<BranchId> = [first.partition.branch_of_cut(CutId(0))].into();
+        let branches = [first.partition.branch_of_cut(CutId(0))].into();
+        let uncut = Uncut { branches, ..Uncut::default() };
         let mut before = first;
-        for uncut in [&uncut, &BTreeSet::new()] {
+        for uncut in [&uncut, &Uncut::default()] {
             counts.taken();
             let after = run.build(uncut, Some(before), &fits).expect("blocks");
             assert!((1..8).contains(&counts.taken()[0]), "most are carried over");

@@ -94,7 +94,7 @@ impl Tasks {
             let together = run.together();
             let partition = run.partition(&BTreeMap::new(), &together)?;
             let weights = run.costs(&partition).iter().map(|cost| 1 + cost.tets as u64).collect();
-            let tangled = tangled_clusters(shop.skeleton, &partition, &overlaps);
+            let tangled = tangled_clusters(shop.skeleton, &partition, &overlaps, &BTreeSet::new());
             Ok(Self { together, tangled, weights, estimate: Estimate::of(&partition, shop.plan) })
         };
         shop.store.once(("tasks", key), progress, find)

@@ -3,6 +3,7 @@
 use super::error::RunError;
 use super::plan::MeshPlan;
 use super::report::MeshSize;
+use super::routes::Uncut;
 use super::run::{Job, Meshed};
 use super::store::Store;
 use super::timing::Clock;
@@ -12,7 +13,6 @@ use anastomesh_mesh::check::check_volume_with;
 use anastomesh_mesh::progress::{Progress, Stage, ask};
 use anastomesh_mesh::source::{MeshSource, SourceCounts};
 use anastomesh_skeleton::Skeleton;
-use std::collections::BTreeSet;
 use std::io;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(super) fn mesh_smoothed(
 ) -> Result<Meshed, RunError> {
     let job = Job::of(network, plan, store, progress, clock)?;
     let network = Arc::clone(&job.skeleton);
-    let mut blocks = job.run(clock).build(&BTreeSet::new(), None, &|_| Ok(()))?;
+    let mut blocks = job.run(clock).build(&Uncut::default(), None, &|_| Ok(()))?;
     let whole = job.numbered(&mut blocks, clock)?;
     let (mut report, expectation) = job.described(blocks)?;
     ask(progress)?;

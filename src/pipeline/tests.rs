@@ -468,3 +468,26 @@ fn refinement_separates_two_trees_that_share_their_terminals() {
     assert_eq!(r.moved.metrics.folds.count, 0);
     assert_eq!((grown.check(), refined.skeleton.check()), (Ok(()), Ok(())));
 }
+
+#[test]
+fn vessels_whose_walls_cannot_be_parted_share_a_cluster_if_they_may_fuse() {
+    // Two vessels that cross at a distance of a thousandth of a radius.
+    let (c, s) = (14.0 * libm::cos(0.8), 14.0 * libm::sin(0.8));
+    let height = 2.001;
+    let nodes = [
+        [-12.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [12.0, 0.0, 0.0, 1.0],
+        [-c, -s, height, 1.0],
+        [0.0, 0.0, height, 1.0],
+        [c, s, height, 1.0],
+    ];
+    let network = skeleton(&nodes, &[[0, 1], [1, 2], [3, 4], [4, 5]]);
+    let made = |fuse| run(&network, &MeshPlan { fuse, ..MeshPlan::default() }).expect("meshed");
+    let apart = made(false);
+    assert!(apart.check.failed().all(|line| line.line == anastomesh_mesh::check::Line::NoSelfIntersection));
+    assert!(!apart.check.is_valid());
+    let fused = made(true);
+    assert!(fused.check.is_valid(), "{:?}", fused.check.failed().collect::<Vec<_>>());
+    assert!(!fused.report.keeps_vessels(false) && fused.report.blocks.clusters < apart.report.blocks.clusters);
+}
