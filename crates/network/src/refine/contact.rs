@@ -394,4 +394,32 @@ mod tests {
         }
         assert!(compared > 50 && reversed > 10, "{compared} {reversed}");
     }
+
+    #[test]
+    fn pairs_that_are_not_computed_ask_for_nothing() {
+        let skeleton = tangle(6, 3);
+        let unit = paper_unit(&skeleton);
+        let mut frame = Frame::new(skeleton, 1e9, 1e9, unit);
+        let (clearance, skins) = (1.1, vec![15.0 * unit; frame.skeleton.edges.len()]);
+        let contacts = Contacts::find(&frame, clearance, &skins, false);
+        let none = vec![0.0; frame.skeleton.nodes.len()];
+        let all = vec![f64::INFINITY; none.len()];
+        let (mut moved, mut pushes) = (none, Vec::new());
+        for round in 0..8 {
+            for (i, node) in frame.skeleton.nodes.iter_mut().enumerate().filter(|(i, _)| i % 8 == round) {
+                let step = Vec3::new(2.0, -1.0, 2.0) * ((i % 5) as f64 * unit);
+                node.position += step;
+                moved[i] += step.norm();
+            }
+            let now = contacts.pushes(&frame, clearance, &moved);
+            assert_eq!(now, contacts.pushes(&frame, clearance, &all));
+            assert_ne!(now, pushes);
+            pushes = now;
+        }
+        let asleep = contacts.pairs.iter().filter(|pair| {
+            let far = |e: EdgeId| frame.skeleton.edge(e).nodes.iter().map(|n| moved[n.index()]).fold(0.0, f64::max);
+            far(pair.edges[0]) + far(pair.edges[1]) < f64::from(pair.slack)
+        });
+        assert!(asleep.count() > 20 && !pushes.is_empty());
+    }
 }

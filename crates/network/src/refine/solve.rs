@@ -33,7 +33,8 @@ const EARLY: usize = 10;
 const PATIENCE: usize = 4;
 
 /// Maximum number of pairs of close vessels that are pushed apart, over all iterations: a constant, and a number per edge. Shared
-/// measured networks take at most 3 million in total. Only networks in which nearly everything overlaps exceed it.
+/// measured networks take at most 3 million in total. Only networks in which nearly everything overlaps exceed it. A random walk of
+/// 34,000 nodes, with 43,000 overlapping pairs, takes 1.3 billion.
 const PUSHES: [u64; 2] = [3_000_000, 20_000];
 /// Pairs pushed apart in the time of testing one pair for overlap.
 const COUNT: u64 = 30;
