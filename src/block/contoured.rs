@@ -11,8 +11,8 @@ use super::topology::Topology;
 use super::webs::{Gaps, webs};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::surface::{
-    CapError, CapFailure, CappedSurface, Closing, Field, Finer, SharedDisc, SizedWall, SurfaceParams, cap_terminals,
-    euler_characteristic, vessel_wall,
+    CapError, CapFailure, CappedSurface, Closing, Contour, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
+    euler_characteristic,
 };
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Section, Tube};
@@ -226,14 +226,23 @@ fn cluster_surface(
     let stopped = |stop| stopped(id, stop);
     let cuts = cluster.ends.iter().filter(|end| matches!(end.kind, EndKind::Cut { .. }));
     let finer = Finer::new(&cluster.fine, cuts.map(|end| end.section).collect());
-    let make = |tubes: &[Tube]| vessel_wall(tubes, &surface_params, &finer, watch).map_err(failed);
-    let count = |wall: &SizedWall| {
-        let handles = 1 - euler_characteristic(&wall.mesh) / 2;
+    let contour = |tubes: &[Tube]| Contour::of(tubes, &surface_params, watch).map_err(failed);
+    let relaxed = |contour: Contour| contour.relaxed(&surface_params, &finer, watch).map_err(failed);
+    let count = |contour: &Contour| {
+        let handles = contour.handles();
         Loops::of(cluster, handles, watch).map(|loops| [handles, loops.expected]).map_err(stopped)
     };
     let mut tubes = Cow::Borrowed(&cluster.tubes);
-    let mut wall = make(&tubes)?;
-    let [mut handles, mut loops] = count(&wall)?;
+    let first = contour(&tubes)?;
+    let [mut handles, mut loops] = count(&first)?;
+    let wrong_genus = |[handles, loops]: [i64; 2]| {
+        let is_wrong = handles != loops && !params.allow_fused;
+        if is_wrong { Err(BlockError::Genus { cluster: id, handles, loops }) } else { Ok(()) }
+    };
+    if !params.close_gaps {
+        wrong_genus([handles, loops])?;
+    }
+    let mut wall = relaxed(first)?;
     let mut closed_gaps = Vec::new();
     if params.close_gaps {
         let open = wall.mesh.clone();
@@ -245,15 +254,14 @@ fn cluster_surface(
             }
             tubes = Cow::Owned([&cluster.tubes[..], &webs.tubes].concat());
             closed_gaps = webs.gaps;
-            wall = make(&tubes)?;
-            [handles, loops] = count(&wall)?;
+            let closed = contour(&tubes)?;
+            [handles, loops] = count(&closed)?;
+            wall = relaxed(closed)?;
             if handles == loops {
                 break;
             }
         }
-    }
-    if handles != loops && !params.allow_fused {
-        return Err(BlockError::Genus { cluster: id, handles, loops });
+        wrong_genus([handles, loops])?;
     }
     let astray = Astray::of(&wall.mesh, cluster, watch).map_err(stopped)?;
     if !params.allow_fused {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Operations of failed blocks after which further blocks get a reduced budget: a constant, plus a number per expected
 /// operation of the run. The expected operations alone take the time of the estimate.
-const MUCH: [f64; 2] = [6e8, 4.0];
+const MUCH: [f64; 2] = [3e8, 2.0];
 
 /// Multiple of [`MUCH`] after which no other partition or network is tried.
 const HOPELESS: u64 = 2;
@@ -105,11 +105,11 @@ mod tests {
         ledger.expect(1e9);
         ledger.expect(1e8);
         assert_eq!(ledger.effort(10), Effort::full(10));
-        ledger.add(4_500_000_000);
+        ledger.add(2_200_000_000);
         assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::full(10), false));
-        ledger.add(1_000_000_000);
+        ledger.add(200_000_000);
         assert_eq!((ledger.effort(10), ledger.is_hopeless()), (Effort::REDUCED, false));
-        ledger.add(4_500_000_000);
+        ledger.add(2_300_000_000);
         assert!(ledger.is_hopeless());
     }
 

@@ -65,27 +65,59 @@ pub fn vessel_wall(
     finer: &Finer,
     watch: &Watch,
 ) -> Result<SizedWall, SurfaceError> {
-    check(params)?;
-    let mut field = Field::new(tubes, params.kappa)?;
-    let estimate = estimated_cells(tubes, params.voxel, params.follow);
-    if estimate > params.max_cells as f64 {
-        return Err(SurfaceError::TooLarge { cells: estimate, limit: params.max_cells });
+    Contour::of(tubes, params, watch)?.relaxed(params, finer, watch)
+}
+
+/// Contour of vessels. It has the topology of their wall, as relaxation changes none.
+pub struct Contour {
+    mesh: TriMesh,
+    field: Field,
+}
+
+impl Contour {
+    /// Contours the field of tubes.
+    ///
+    /// # Errors
+    /// See [`vessel_wall`].
+    pub fn of(tubes: &[Tube], params: &SurfaceParams, watch: &Watch) -> Result<Self, SurfaceError> {
+        check(params)?;
+        let mut field = Field::new(tubes, params.kappa)?;
+        let estimate = estimated_cells(tubes, params.voxel, params.follow);
+        if estimate > params.max_cells as f64 {
+            return Err(SurfaceError::TooLarge { cells: estimate, limit: params.max_cells });
+        }
+        let mesh = if is_graded(tubes, params.follow) {
+            contour_graded(tubes, &mut field, params, watch)?
+        } else {
+            contour_field(tubes, &mut field, params, watch)?
+        };
+        Ok(Self { mesh, field })
     }
-    let mesh = if is_graded(tubes, params.follow) {
-        contour_graded(tubes, &mut field, params, watch)?
-    } else {
-        contour_field(tubes, &mut field, params, watch)?
-    };
-    let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
-    let sizes = sizes::wall_sizes(&surface, &mut field, params, finer);
-    watch.spend(surface.points.len() + field.operations())?;
-    let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new(), *watch);
-    relaxation.run((params.rounds + finer.rounds()) as usize)?;
-    let sizes = relaxation.sizes;
-    let (surface, map) = surface.compacted();
-    let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
-    let sizes = kept.map(|(size, _)| size).collect();
-    Ok(SizedWall { mesh: surface.to_mesh().0, sizes, finer: finer.clone(), halves: surface })
+
+    /// Number of handles.
+    pub fn handles(&self) -> i64 {
+        1 - euler_characteristic(&self.mesh) / 2
+    }
+
+    /// Moves the triangles to the radius and improves their shape.
+    ///
+    /// # Errors
+    /// See [`vessel_wall`].
+    pub fn relaxed(self, params: &SurfaceParams, finer: &Finer, watch: &Watch) -> Result<SizedWall, SurfaceError> {
+        let Self { mesh, mut field } = self;
+        let mut surface = HalfEdges::new(&mesh).map_err(|edge| SurfaceError::NotManifold { edge })?;
+        let sizes = sizes::wall_sizes(&surface, &mut field, params, finer);
+        watch.spend(surface.points.len() + field.operations())?;
+        let mut relaxation = Relaxation::new(&mut surface, &mut field, sizes, Vec::new(), *watch);
+        relaxation.run((params.rounds + finer.rounds()) as usize)?;
+        let sizes = relaxation.sizes;
+        let (surface, map) = surface.compacted();
+        let kept = sizes.into_iter().zip(map).filter(|(_, new)| *new != halfedge::NONE);
+        let sizes = kept.map(|(size, _)| size).collect();
+        let relaxed = surface.to_mesh().0;
+        debug_assert_eq!(euler_characteristic(&relaxed), euler_characteristic(&mesh));
+        Ok(SizedWall { mesh: relaxed, sizes, finer: finer.clone(), halves: surface })
+    }
 }
 
 /// Euler characteristic `V − E + F` of a closed triangle surface: 2 per component, less 2 per handle.
