@@ -526,7 +526,7 @@ mod tests {
             cluster(ClusterId(0), &crossing, (plan, effort), tangle, |node| node.0, &Watch::NOBODY)
         };
         let plan = MeshPlan::default();
-        let scarce = Effort::linear(1e5, 0.0);
+        let scarce = Effort::linear(1e4, 0.0);
         let fused = tried(&plan, scarce, RetryStrategy::Usual);
         assert_eq!(fused.way, "vessels that overlap taken as one, as usual");
         assert!(fused.failures.len() == 1 && fused.failures[0].is_over_budget(), "{:?}", fused.failures);
