@@ -109,6 +109,9 @@ mod tests {
             assert_eq!(shelf.read(2 * i, 0..4).expect("readable"), b"file");
             assert_eq!(shelf.read(2 * i + 1, 1..4).expect("readable"), format!("{i:04}").as_bytes()[1..]);
         }
+        let (path, extent) = shelf.extent(7).expect("a record");
+        assert_eq!((path.to_path_buf(), extent), (folder.path().join("3"), 5..9));
+        assert!(shelf.extent(6 * OPEN).is_none());
         assert!(shelf.read(0, 0..5).is_err() && shelf.read(6 * OPEN, 0..1).is_err());
         assert_eq!((shelf.len(), shelf.bytes()), (6 * OPEN, 24 * OPEN as u64));
     }

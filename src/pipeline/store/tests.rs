@@ -293,3 +293,23 @@ fn shards_are_joined_when_all_are_complete() {
     let rest = open(Role::Alone { restart: false, make_missing: true }).expect("the rest is made");
     assert_holds(&rest, 7);
 }
+
+#[test]
+fn files_that_cannot_be_read_do_not_count_as_missing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let shard = Shard::new(1, 2).expect("a shard");
+    let all_read = || {
+        [
+            manifest(3.0).begun(folder.path()).is_ok(),
+            super::shards::unmark(folder.path(), shard).is_ok(),
+            super::log::scan_path(&path("file/records")).is_ok(),
+        ]
+    };
+    assert_eq!(all_read(), [true; 3]);
+    // Folders in the places of files, and a file in the place of a folder.
+    fs::create_dir(path(super::manifest::MANIFEST)).expect("a folder");
+    fs::create_dir(path(&shard.mark())).expect("a folder");
+    fs::write(path("file"), b"").expect("written");
+    assert_eq!(all_read(), [false; 3]);
+}
