@@ -25,7 +25,8 @@ const FAR: f64 = 4.5;
 const FEW: usize = 8;
 /// Operations per pair of close vessels, as counted by budgets.
 const PER_PAIR: usize = 20;
-/// Maximum distance form of the field deep in a lumen, more than a grid cell from the wall, where it is 1.
+/// Maximum distance form of the field deep in a lumen. The wall is where it is 1, so that vessels with such a lumen between them are
+/// joined whatever the grid.
 const DEEP: f64 = 0.6;
 /// Number of steps between two axes in which the field is sampled.
 const SAMPLES: u8 = 16;
@@ -305,44 +306,32 @@ mod tests {
         assert!(fused_by_field(&crossing(0.5), 0.35, &Watch::NOBODY.within(&no_time)).is_err());
     }
 
-    #[test]
-    fn a_long_crotch_is_not_fused() {
-        // Two vessels that leave a trunk side by side, and separate after 20 radii.
+    /// A trunk, and two vessels that leave it side by side, in steps of two radii at these distances.
+    fn side_by_side(apart: &[f64]) -> Cluster {
         let mut points = vec![[-9.0, 0.0, 0.0], [0.0; 3]];
         let mut edges = vec![(0, 1)];
         for side in [-0.5, 0.5] {
             let mut last = 1;
-            for i in 1..=15 {
+            for (i, y) in apart.iter().enumerate() {
                 edges.push((last, points.len() as u32));
                 last = points.len() as u32;
-                points.push([2.0 * f64::from(i), side * (0.5 + 0.15 * f64::from(i)), 0.0]);
+                points.push([2.0 * (i as f64 + 1.0), side * y, 0.0]);
             }
         }
         let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
-        let whole = |edges: &[(u32, u32)]| partition(&network(&points, 1.0, edges), &params).expect("a partition");
-        let fork = whole(&edges).clusters.remove(0);
-        assert_eq!(of(&fork), Astray::default());
+        partition(&network(&points, 1.0, &edges), &params).expect("a partition").clusters.remove(0)
+    }
+
+    #[test]
+    fn a_long_crotch_is_not_fused() {
+        // They separate after 20 radii.
+        let apart: Vec<f64> = (1..=15).map(|i| 0.5 + 0.15 * f64::from(i)).collect();
+        assert_eq!(of(&side_by_side(&apart)), Astray::default());
     }
 
     #[test]
     fn vessels_that_part_and_meet_again_are_fused() {
-        // Two vessels that leave a trunk side by side, in steps of two radii.
-        let of = |apart: &[f64]| {
-            let mut points = vec![[-9.0, 0.0, 0.0], [0.0; 3]];
-            let mut edges = vec![(0, 1)];
-            for side in [-0.5, 0.5] {
-                let mut last = 1;
-                for (i, y) in apart.iter().enumerate() {
-                    edges.push((last, points.len() as u32));
-                    last = points.len() as u32;
-                    points.push([2.0 * (i as f64 + 1.0), side * y, 0.0]);
-                }
-            }
-            let params = PartitionParams { long: 1e9, ..PartitionParams::default() };
-            let skeleton = network(&points, 1.0, &edges);
-            fused_by_field(&partition(&skeleton, &params).expect("a partition").clusters[0], 0.35, &Watch::NOBODY)
-                .unwrap()
-        };
+        let of = |apart: &[f64]| fused_by_field(&side_by_side(apart), 0.35, &Watch::NOBODY).unwrap();
         // The gap between them has 0.4 radii.
         let [p, q] = of(&[1.0, 1.7, 2.4, 2.4, 2.4, 2.4, 1.7, 1.0, 1.0, 1.0]).expect("they are fused");
         assert!(p.x > 12.0 && q.x > 12.0, "{p} {q}");
