@@ -11,8 +11,8 @@ use super::topology::Topology;
 use super::webs::{Gaps, webs};
 use crate::partition::{Cluster, ClusterEnd, ClusterId, EndKind};
 use crate::surface::{
-    CapError, CapFailure, CappedSurface, Closing, Contour, Field, Finer, SharedDisc, SurfaceParams, cap_terminals,
-    euler_characteristic,
+    CapError, CapFailure, CappedSurface, Closing, Contour, Field, Finer, SharedDisc, SizedWall, SurfaceParams,
+    cap_terminals, euler_characteristic,
 };
 use anastomesh_mesh::budget::Stop;
 use anastomesh_mesh::geometry::{Point3, Section, Tube};
@@ -226,13 +226,64 @@ fn cluster_surface(
     let stopped = |stop| stopped(id, stop);
     let cuts = cluster.ends.iter().filter(|end| matches!(end.kind, EndKind::Cut { .. }));
     let finer = Finer::new(&cluster.fine, cuts.map(|end| end.section).collect());
-    let contour = |tubes: &[Tube]| Contour::of(tubes, &surface_params, watch).map_err(failed);
-    let relaxed = |contour: Contour| contour.relaxed(&surface_params, &finer, watch).map_err(failed);
+    let OpenWall { wall, tubes, closed_gaps } = open_wall(id, cluster, params, (&surface_params, &finer), watch)?;
+    let astray = Astray::of(&wall.mesh, cluster, watch).map_err(stopped)?;
+    if !params.allow_fused {
+        stays(id, astray)?;
+    }
+    let mut field = Field::new(&tubes, params.kappa).map_err(failed)?;
+    let closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
+    let given =
+        |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
+    let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
+    let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
+        section: end.section,
+        node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
+        disc,
+    };
+    let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
+    let capped = cap_terminals(&wall, &mut field, &ends, &surface_params, params.allow_fused, watch);
+    let mut capped = capped.map_err(|source| match source {
+        CapError::Stopped(stop) => stopped(stop),
+        source => BlockError::Cap { cluster: id, source: name_end(source, &closed) },
+    })?;
+    // Converts cap indices from closed ends to all ends.
+    for cap in capped.cap.iter_mut().flatten() {
+        *cap = closed[*cap as usize].0;
+    }
+    Ok(ClusterWall { surface: capped, voxel, astray, closed_gaps })
+}
+
+/// Wall of a cluster before its ends are closed.
+struct OpenWall<'a> {
+    wall: SizedWall,
+    /// Tubes whose field it bounds: those of the cluster, and those in closed gaps.
+    tubes: Cow<'a, [Tube]>,
+    /// Places of gaps that were closed.
+    closed_gaps: Vec<Point3>,
+}
+
+/// Contours a cluster, closes narrow gaps with [`BlockParams::close_gaps`], and relaxes the wall. The genus is compared first, as
+/// relaxation changes no topology.
+///
+/// # Errors
+/// See [`cluster_surface`].
+fn open_wall<'a>(
+    id: ClusterId,
+    cluster: &'a Cluster,
+    params: &BlockParams,
+    (surface_params, finer): (&SurfaceParams, &Finer),
+    watch: &Watch,
+) -> Result<OpenWall<'a>, BlockError> {
+    let failed = |source| BlockError::of_wall(id, source);
+    let stopped = |stop| stopped(id, stop);
+    let contour = |tubes: &[Tube]| Contour::of(tubes, surface_params, watch).map_err(failed);
+    let relaxed = |contour: Contour| contour.relaxed(surface_params, finer, watch).map_err(failed);
     let count = |contour: &Contour| {
         let handles = contour.handles();
         Loops::of(cluster, handles, watch).map(|loops| [handles, loops.expected]).map_err(stopped)
     };
-    let mut tubes = Cow::Borrowed(&cluster.tubes);
+    let mut tubes = Cow::Borrowed(&cluster.tubes[..]);
     let first = contour(&tubes)?;
     let [mut handles, mut loops] = count(&first)?;
     let wrong_genus = |[handles, loops]: [i64; 2]| {
@@ -263,31 +314,7 @@ fn cluster_surface(
         }
         wrong_genus([handles, loops])?;
     }
-    let astray = Astray::of(&wall.mesh, cluster, watch).map_err(stopped)?;
-    if !params.allow_fused {
-        stays(id, astray)?;
-    }
-    let mut field = Field::new(&tubes, params.kappa).map_err(failed)?;
-    let closed: Vec<(u32, &ClusterEnd)> = capped_ends(cluster, params.ends).collect();
-    let given =
-        |e: &ClusterEnd| disc_of_end(&e.section, e.kind, params.rho).filter(|_| params.ends == EndStyle::Shared);
-    let discs: Vec<Option<SharedDisc>> = closed.iter().map(|(_, e)| given(e)).collect();
-    let closing = |((_, end), disc): (&(u32, &ClusterEnd), _)| Closing {
-        section: end.section,
-        node: if let EndKind::Terminal(node) = end.kind { Some(node) } else { None },
-        disc,
-    };
-    let ends: Vec<Closing> = closed.iter().zip(discs.iter().map(Option::as_ref)).map(closing).collect();
-    let capped = cap_terminals(&wall, &mut field, &ends, &surface_params, params.allow_fused, watch);
-    let mut capped = capped.map_err(|source| match source {
-        CapError::Stopped(stop) => stopped(stop),
-        source => BlockError::Cap { cluster: id, source: name_end(source, &closed) },
-    })?;
-    // Converts cap indices from closed ends to all ends.
-    for cap in capped.cap.iter_mut().flatten() {
-        *cap = closed[*cap as usize].0;
-    }
-    Ok(ClusterWall { surface: capped, voxel, astray, closed_gaps })
+    Ok(OpenWall { wall, tubes, closed_gaps })
 }
 
 /// Failure of a cluster that was stopped.
